@@ -33,9 +33,13 @@ std::uint8_t colour_number(const std::string& name) { return *value_of(constants
 
 std::uint8_t read_colour(Configuration& from) { return colour_number(from.text("colour", colours())); }
 
-Placement read_placement(Configuration& from) {
+Placement read_placement(Configuration& from, bool has_line) {
   Placement placement;
   placement.frame = from.text("frame", {"world", "line_begin", "line_end"}, "world");
+  if (!has_line && placement.frame != "world") {
+    throw from.error("frame",
+                     fmt::format("found {}, accepted world, because the scenario has no line", placement.frame));
+  }
   const std::vector<double> position = from.numbers("position_m", {-kFar_m, kFar_m}, 2, 2);
   placement.position_m = {position[0], position[1]};
   placement.yaw_rad = from.number("yaw_rad", {-2.0 * std::numbers::pi, 2.0 * std::numbers::pi}, 0.0);
@@ -72,11 +76,11 @@ void read_line(Configuration line, ScenarioDraft& draft) {
 
 /// Reads a list of bodies, each with its placement. `read` reads what else a body has.
 template <class Body>
-void read_list(Configuration& root, const char* key, void (*read)(Configuration& from, Body& body),
+void read_list(Configuration& root, const char* key, void (*read)(Configuration& from, Body& body), bool has_line,
                std::vector<Body>& bodies, std::vector<Placement>& placements) {
   for (Configuration& from : root.list(key, false)) {
     read(from, bodies.emplace_back());
-    placements.push_back(read_placement(from));
+    placements.push_back(read_placement(from, has_line));
     from.finish();
   }
 }
@@ -96,10 +100,10 @@ void read_obstacle(Configuration& from, ScenarioObstacle& obstacle) {
   std::tie(obstacle.shape, obstacle.size_m) = read_shape(from, 20.0);
 }
 
-void read_bodies(Configuration& root, ScenarioDraft& draft) {
-  read_list(root, "objects", read_object, draft.fixed.objects, draft.objects);
-  read_list(root, "zones", read_zone, draft.fixed.zones, draft.zones);
-  read_list(root, "obstacles", read_obstacle, draft.fixed.obstacles, draft.obstacles);
+void read_bodies(Configuration& root, bool has_line, ScenarioDraft& draft) {
+  read_list(root, "objects", read_object, has_line, draft.fixed.objects, draft.objects);
+  read_list(root, "zones", read_zone, has_line, draft.fixed.zones, draft.zones);
+  read_list(root, "obstacles", read_obstacle, has_line, draft.fixed.obstacles, draft.obstacles);
   const auto limit = [&](const char* key, std::size_t found, std::size_t most) {
     if (found > most) throw root.error(key, fmt::format("found a list of {}, accepted a list of 0 to {}", found, most));
   };
@@ -268,14 +272,14 @@ ScenarioDraft read_scenario_draft(Configuration root) {
     return draft;
   }
   if (root.has("line")) read_line(root.section("line"), draft);
-  read_bodies(root, draft);
+  const bool has_line = !draft.fixed.line_segments.empty();
+  read_bodies(root, has_line, draft);
   if (root.has("mission")) draft.mission = check_mission(root.section("mission"), draft.fixed);
   read_perturbations(root, draft.fixed);
   read_surroundings(root, draft.fixed);
-  if (root.has("mission"))
-    check_contrast(root, draft.fixed.ground_colour, !draft.fixed.line_segments.empty(), draft.mission);
+  if (root.has("mission")) check_contrast(root, draft.fixed.ground_colour, has_line, draft.mission);
   Configuration start = root.section("start");
-  draft.start = read_placement(start);
+  draft.start = read_placement(start, has_line);
   start.finish();
   draft.variation = read_variation(root.section("variation", false));
   root.finish();

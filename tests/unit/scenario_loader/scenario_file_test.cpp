@@ -117,6 +117,25 @@ TEST(ScenarioFile, LinesOfTheCaseStudyHaveTheirLengthAndRadius) {
   }
 }
 
+TEST(ScenarioFile, WithoutALineOnlyTheWorldIsAFrame) {
+  const std::string line = "line: {colour: blue, width_m: 0.05, begin_m: [1, 0], segments: [{length_m: 2}]}\n";
+  const std::string object = "colour: red, radius_m: 0.08, height_m: 0.15, mass_kg: 0.4";
+  for (const std::string frame : {"line_begin", "line_end"}) {
+    const std::string at = "frame: " + frame + ", position_m: [0.6, 0.5]";
+    for (const auto& [key, bodies] : {std::pair<std::string, std::string>{"objects[0]", "objects: [{" + object},
+                                      {"zones[0]", "zones: [{colour: red, radius_m: 0.3"},
+                                      {"obstacles[0]", "obstacles: [{radius_m: 0.03, height_m: 0.1"}}) {
+      const std::string text = kMinimal + bodies + ", " + at + "}]\n";
+      EXPECT_EQ(error_of(text),
+                "x.yaml:3: " + key + ".frame: found " + frame + ", accepted world, because the scenario has no line");
+      EXPECT_NO_THROW((void)read(text + line));
+    }
+    const std::string start = error_of("name: x\nstart: {" + at + "}\n");
+    EXPECT_NE(start.find("start.frame: found " + frame + ", accepted world"), std::string::npos) << start;
+  }
+  EXPECT_NO_THROW((void)read(kMinimal + "objects: [{" + object + ", frame: world, position_m: [0.6, 0.5]}]\n"));
+}
+
 TEST(ScenarioFile, AnObjectMustNotLieUnderALongRobot) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "x.yaml";
