@@ -199,6 +199,11 @@ TEST_F(Evaluate, RefusesWhatItCannotDo) {
     EXPECT_NE(process.errors().find(reason), std::string::npos) << process.errors();
   };
   refused({"--seeds", "3..1"}, exit_status::kUsage, "--seeds: found '3..1'");
+  refused({"--seeds", ""}, exit_status::kUsage, "--seeds: found nothing, accepted seeds and ranges");
+  refused({"--seeds="}, exit_status::kUsage, "--seeds");
+  refused({"--vary", "noise.camera_sd=1", "--vary", "noise.camera_sd=2"}, exit_status::kUsage,
+          "accepted each key once");
+  refused({"--vary", "noise.camera_sd=0.5,0.5"}, exit_status::kUsage, "found the value 0.5 twice");
   refused({"--shard", "3/2"}, exit_status::kUsage, "--shard: found '3/2'");
   refused({"--vary", "noise"}, exit_status::kUsage, "--vary: found 'noise'");
   refused({"--vary", "robto:links=1"}, exit_status::kConfiguration, "did you mean 'robot'?");

@@ -75,6 +75,35 @@ TEST(Variations, NameTheirFileTheScenarioByDefault) {
     EXPECT_THROW(static_cast<void>(parse_variation(wrong)), UsageError) << wrong;
 }
 
+/// What make_variants() or parse_variation() says about wrong usage; empty: nothing is wrong.
+std::string usage_error(const std::vector<std::string>& texts) {
+  try {
+    std::vector<Variation> variations;
+    for (const auto& text : texts) variations.push_back(parse_variation(text));
+    static_cast<void>(make_variants(variations));
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Variations, HaveEachValueOnce) {
+  for (const char* wrong : {"robot:a.b=0.5,0.5", "robot:a.b=0.5,1,0.50", "robot:a.b=x, x", "robot:a.b=[1, 2],[1, 2]"})
+    EXPECT_NE(usage_error({wrong}).find("--vary robot:a.b: found the value "), std::string::npos) << wrong;
+  EXPECT_NE(usage_error({"a=0.5,0.5"}).find("found the value 0.5 twice, accepted each value once"), std::string::npos);
+  EXPECT_EQ(usage_error({"a=0.5,0.51,x,X,[1],[1.0]"}), "");
+}
+
+TEST(Variants, HaveEachKeyOnce) {
+  const std::string same = usage_error({"a.b=1", "c=3", "a.b=2"});
+  EXPECT_NE(same.find("--vary a.b: found also --vary a.b, which it would overwrite"), std::string::npos) << same;
+  EXPECT_NE(same.find("in one --vary, such as a.b=1,2"), std::string::npos) << same;
+  EXPECT_NE(usage_error({"scenario:a=1", "a=2"}).find("--vary a: found also"), std::string::npos);
+  EXPECT_NE(usage_error({"a.b=1", "a={b: 2}"}).find("--vary a: found also --vary a.b"), std::string::npos);
+  EXPECT_EQ(usage_error({"a={b: 2}", "a.b=1"}), "") << "the second changes a part of the first";
+  EXPECT_EQ(usage_error({"a.b=1", "a.bc=1", "robot:a.b=1"}), "");
+}
+
 TEST(Variants, AreAllCombinationsInFoldersOfTheirOwn) {
   const auto variants = make_variants({parse_variation("a=1,2"), parse_variation("robot:b/c=x,x y")});
   ASSERT_EQ(variants.size(), 4u);

@@ -207,7 +207,10 @@ void add_evaluation_options(CLI::App& app, EvaluateOptions& options) {
   RunOptions& run = options.request.run;
   app.add_option("SCENARIO", run.scenario,
                  "a name (see `constrictor list scenarios`) or a file (default: the manifest's)");
-  app.add_option("--seeds", options.seeds, "seeds of the runs: 1..40, or 1,5,9..12 (default: 1..10)");
+  app.add_option("--seeds", options.seeds, "seeds of the runs: 1..40, or 1,5,9..12 (default: 1..10)")
+      ->check([](const std::string& text) {
+        return text.empty() ? "found nothing, accepted seeds and ranges such as 1..40 or 1,5,9..12" : std::string();
+      });
   app.add_option("--vary", options.request.vary,
                  "[FILE:]KEY=VALUE[,VALUE...]: do all runs with each of these values. KEY names a value of the\n"
                  "scenario, or of FILE: robot, or a component, such as navigation; may be repeated (all combinations)")

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "cli/usage.hpp"
@@ -42,6 +43,39 @@ std::vector<std::string> split_values(const std::string& text) {
     else values.back() += c;
   }
   return values;
+}
+
+/// The value as a number in one spelling, so that 0.5 equals 0.50; other values without blanks around them.
+std::string plain_value(const std::string& value) {
+  const std::string text = CLI::detail::trim_copy(value);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? fmt::to_string(number) : text;
+}
+
+/// Throws UsageError if a value of a variation is there twice: its runs would be done twice.
+void refuse_equal_values(const Variation& variation) {
+  std::set<std::string> values;
+  for (const auto& value : variation.values) {
+    if (values.insert(plain_value(value)).second) continue;
+    throw UsageError(
+        fmt::format("--vary {}: found the value {} twice, accepted each value once: its runs would be "
+                    "done twice",
+                    variation.name(), CLI::detail::trim_copy(value)));
+  }
+}
+
+/// Throws UsageError if a variation overwrites what an earlier one has set.
+void refuse_equal_keys(const std::vector<Variation>& variations) {
+  for (auto later = variations.begin(); later != variations.end(); ++later) {
+    for (auto earlier = variations.begin(); earlier != later; ++earlier) {
+      if (earlier->file != later->file || !(earlier->key + ".").starts_with(later->key + ".")) continue;
+      throw UsageError(
+          fmt::format("--vary {}: found also --vary {}, which it would overwrite, accepted each key once; "
+                      "write all values of a key in one --vary, such as {}=1,2",
+                      later->name(), earlier->name(), later->name()));
+    }
+  }
 }
 
 std::string folder_name(std::string text) {
@@ -131,6 +165,7 @@ Variation parse_variation(const std::string& text) {
                     "navigation:travel.speed_m_s=0.8,1.0",
                     text));
   }
+  refuse_equal_values(variation);
   return variation;
 }
 
@@ -145,6 +180,7 @@ fs::path config_file_of(const std::string& component, const LaunchPlan& plan) {
 }
 
 std::vector<Variant> make_variants(const std::vector<Variation>& variations) {
+  refuse_equal_keys(variations);
   std::vector<Variant> variants(1);
   for (const auto& variation : variations) {
     std::vector<Variant> longer;

@@ -31,7 +31,7 @@ struct Variation {
   [[nodiscard]] std::string name() const { return file == "scenario" ? key : file + ":" + key; }
 };
 
-/// Throws UsageError.
+/// Throws UsageError, also if a value is there twice.
 [[nodiscard]] Variation parse_variation(const std::string& text);
 
 /// One combination of the varied values.
@@ -42,7 +42,7 @@ struct Variant {
 };
 
 /// All combinations of the values, the last variation changing fastest; one variant without settings if nothing is
-/// varied.
+/// varied. Throws UsageError if a variation overwrites an earlier one, because it has the same key or one above it.
 [[nodiscard]] std::vector<Variant> make_variants(const std::vector<Variation>& variations);
 
 /// The configuration file that a component of this run reads: the given one, or its default; empty if it has none.
