@@ -1,5 +1,7 @@
 #include "component/mission.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace constrictor {
@@ -14,6 +16,12 @@ PriorKnowledge read_knowledge(Configuration root) {
   read("object_radius_m", kObjectRadiusBounds_m, known.object_radius_m);
   read("object_max_radius_m", {0.02, 2.0}, known.object_max_radius_m);
   read("zone_radius_m", kZoneRadiusBounds_m, known.zone_radius_m);
+  if (known.object_radius_m && known.object_max_radius_m && *known.object_radius_m > *known.object_max_radius_m) {
+    throw root.error("object_radius_m",
+                     fmt::format("found {:g}, more than object_max_radius_m: {:g}, accepted a usual radius of objects "
+                                 "that is at most the largest; correct one of the two keys",
+                                 *known.object_radius_m, *known.object_max_radius_m));
+  }
   read("line_width_m", {0.01, 0.3}, known.line_width_m);
   if (root.has("zones_at")) {
     const std::vector<std::string> names = zones_at_names();

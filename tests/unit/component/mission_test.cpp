@@ -53,6 +53,8 @@ TEST(Mission, RefusesWhatCannotBe) {
         {"{sequence: [red], line_colour: blue, speed: 3}", "speed"},
         {"{sequence: [red], line_colour: blue, known: {weight_kg: 3}}", "known.weight_kg"},
         {"{sequence: [red], line_colour: blue, known: {zone_radius_m: 0}}", "known.zone_radius_m: found 0"},
+        {"{sequence: [red], line_colour: blue, known: {object_radius_m: 0.1, object_max_radius_m: 0.05}}",
+         "known.object_radius_m: found 0.1, more than object_max_radius_m: 0.05, accepted"},
         {"{sequence: [red], line_colour: blue, known: {object_height_m: .nan}}", "known.object_height_m: found "},
         {"{sequence: [red], line_colour: blue, known: {zones_at: end}}",
          "known.zones_at: found end, accepted one of beginning, anywhere"},
