@@ -88,6 +88,23 @@ TEST(Recoveries, AnotherObjectAfterADropWasPushedOffItsZone) {
   EXPECT_EQ(after_drop("red"), (Causes{{"inspect drop: the dropped object was not seen on its zone", 1}}));
 }
 
+// Source: MissionPlanner::after_drop() and after_inspection(), with inspect_s: 20.
+TEST(Recoveries, ADroppedObjectWasSeenOutsideItsZoneOrNotSeenOnIt) {
+  const SearchLimits limits{30.0, 60.0, 20.0};
+  const auto look = [&](double lasts_s, const std::vector<Event>& events = {}) {
+    const std::vector<State> states{{0, "drop"}, {20, "inspect drop"}, {20 + lasts_s, "search object"}};
+    return causes(report(1, states, events), limits).begin()->first;
+  };
+  const std::string outside = "the dropped object was seen outside its zone";
+  const std::string unseen = "the dropped object was not seen on its zone";
+  EXPECT_EQ(look(3), "inspect drop: " + outside);
+  EXPECT_EQ(look(20.02), "inspect drop: " + unseen) << "the look has taken its time";
+  EXPECT_EQ(look(3, {{22.98, "object_found"}}), "inspect drop: " + unseen) << "the look has found it";
+  EXPECT_EQ(look(3, {{22.0, "object_found"}}), "inspect drop: " + outside) << "one look later";
+  EXPECT_EQ(causes(report(1, {{0, "drop"}, {20, "search object"}}, {{19.98, "dropping_done"}})),
+            (Causes{{"drop: " + outside, 1}}));
+}
+
 // Source: MissionPlanner::next_by_time(): a search that has taken its time limit begins anew in the same state.
 TEST(Recoveries, ASearchBeyondItsTimeLimitStaysInItsState) {
   const json search = report(3, {{0, "search line or object"}, {50, "grasp"}, {70, "search line"}});

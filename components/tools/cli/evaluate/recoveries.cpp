@@ -111,13 +111,26 @@ bool turns_to_another(const std::vector<Event>& events, double at_s) {
   return !dropped.empty() && !next.empty() && dropped != next;
 }
 
-/// The cause of a recovery that no event reports.
-std::string silent_cause(const StateStay& stay, const std::string& to, const std::vector<Event>& events) {
+/// Why the robot searched for the object that it had dropped, in the words of MissionPlanner::after_drop() and
+/// after_inspection(): the first of them goes on as soon as the map has the object outside its zone; the second one
+/// waits for the end of the look, which has found the object or has taken its time. If that time is unknown, a look
+/// without an end counts as one that has not seen the object on its zone.
+const char* cause_after_drop(const StateStay& stay, const std::vector<Event>& at_end, const SearchLimits& limits) {
+  const bool found =
+      std::any_of(at_end.begin(), at_end.end(), [](const Event& event) { return event.name == "object_found"; });
+  const bool in_time = std::isfinite(limits.inspect_s) && stay.end_s - stay.begin_s < limits.inspect_s - kAtOnce_s;
+  return stay.state == "drop" || (in_time && !found) ? "the dropped object was seen outside its zone"
+                                                     : "the dropped object was not seen on its zone";
+}
+
+/// The cause of a recovery that no event reports. `at_end`: the events at the end of the stay.
+std::string silent_cause(const StateStay& stay, const std::string& to, const std::vector<Event>& events,
+                         const std::vector<Event>& at_end, const SearchLimits& limits) {
   const bool object = among(kAfterLostObject, to);
   const bool dropped = stay.state == "inspect drop" || stay.state == "drop";
   if (dropped && object) {
     return turns_to_another(events, stay.end_s) ? "a delivered object was pushed off its zone"
-                                                : "the dropped object was not seen on its zone";
+                                                : cause_after_drop(stay, at_end, limits);
   }
   if (to == "turn back") return "the line leads the wrong way";
   if (to == "turn round") return "the robot followed the line the wrong way";
@@ -151,7 +164,7 @@ void add_recoveries(const std::vector<StateStay>& stays, std::size_t index, cons
   if (refused || !is_recovery(stay.state, to)) return;
   const std::string reported = reported_failure(at_end);
   if (to == "failed" && reported.empty() && !gave_up) return;  // a time limit of the mission
-  const std::string cause = reported.empty() ? silent_cause(stay, to, events) : reported;
+  const std::string cause = reported.empty() ? silent_cause(stay, to, events, at_end, limits) : reported;
   // The planner may have failed because there were too many recoveries; then it does not count the last one.
   found.push_back({stay.end_s, index, true, stay.state + ": " + cause, reported.empty() || to == "failed"});
 }

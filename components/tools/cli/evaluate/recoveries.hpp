@@ -11,10 +11,11 @@
 
 namespace constrictor::cli {
 
-/// After such a time in a search for the line, the planner counts a recovery and stays in its state. No event tells it.
+/// Times after which the planner counts a recovery without an event. In a search for the line it stays in its state.
 struct SearchLimits {
   double empty_s = std::numeric_limits<double>::infinity();    ///< without an object
   double holding_s = std::numeric_limits<double>::infinity();  ///< with one
+  double inspect_s = std::numeric_limits<double>::infinity();  ///< of a look at a dropped object
 };
 
 /// One time from a loss until the mission goes on.

@@ -1,4 +1,4 @@
-// When the planner of a run gives up a search for the line.
+// When the planner of a run gives up a search for the line, or a look at a dropped object.
 #pragma once
 
 #include "cli/evaluate/recoveries.hpp"
