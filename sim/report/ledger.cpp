@@ -133,6 +133,18 @@ std::string ObjectLedger::shortfall(const msg::SceneDescription& scene, const ms
   return fmt::format("{}", fmt::join(faults, "; "));
 }
 
+bool ObjectLedger::all_in_zones(const std::vector<std::uint8_t>& demanded, const msg::SceneDescription& scene,
+                                const msg::WorldState& world) const {
+  return std::all_of(demanded.begin(), demanded.end(), [&](std::uint8_t colour) {
+    std::ptrdiff_t found = 0;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      const bool counts = scene.objects[i].colour == colour && static_cast<std::int32_t>(i) != held;
+      found += counts && judge_zone(scene, world, i).in_zone ? 1 : 0;
+    }
+    return found >= std::count(demanded.begin(), demanded.end(), colour);
+  });
+}
+
 void BelievedLedger::on_event(const msg::TaskEvent& event) {
   if (event.event == msg::kEventObjectGrasped) {
     const auto same = std::find_if(objects.begin(), objects.end(), [&](const BelievedObject& one) {

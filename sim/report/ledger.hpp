@@ -48,6 +48,10 @@ struct ObjectLedger {
   /// dropped must have been dropped in the order of the sequence, apart from those that it put aside and announced
   /// again later; an operator or an external planner may use another order.
   [[nodiscard]] std::string shortfall(const msg::SceneDescription& scene, const msg::WorldState& world) const;
+  /// Whether as many objects of each colour as `demanded` names lie in zones of their colour, and not in the robot's
+  /// grip. It does not matter who brought them there, nor in which order.
+  [[nodiscard]] bool all_in_zones(const std::vector<std::uint8_t>& demanded, const msg::SceneDescription& scene,
+                                  const msg::WorldState& world) const;
 
   template <class Archive>
   void serialize(Archive& archive) {

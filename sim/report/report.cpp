@@ -37,6 +37,7 @@ Report::Report(Wiring& wiring, const Setup& setup) : Report(wiring, setup, load_
 Report::Report(Wiring& wiring, const Setup& setup, const RobotModel& robot)
     : ConfiguredComponent(wiring, setup),
       limit_(config_.limit(parse_mission(setup.mission).value_or(Mission{}).limits)),
+      demanded_(parse_mission(setup.mission).value_or(Mission{}).sequence),
       scenario_(setup.scenario_file.stem().string()),
       seed_(setup.seed),
       plant_limit_s_(setup.max_sim_time_s),

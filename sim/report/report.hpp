@@ -103,7 +103,8 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   }
 
   ReportConfig::Limit limit_;
-  std::string scenario_;  // name of the scenario file, without folder and ending
+  std::vector<std::uint8_t> demanded_;  // colours of the mission's objects
+  std::string scenario_;                // name of the scenario file, without folder and ending
   std::uint64_t seed_;
   double plant_limit_s_;  // [s] simulated time at which the plant ends the run; 0: never
   std::filesystem::path folder_;

@@ -84,6 +84,9 @@ std::string Report::mission_json(const Tick& tick, const std::string& figure_err
   json["believed"] = state_.mission == msg::kMissionSucceeded ? "succeeded"
                      : state_.mission == msg::kMissionRunning ? "unfinished"
                                                               : "failed";
+  json["all_in_zones"] = truth() && !demanded_.empty()
+                             ? ordered_json(state_.ledger.all_in_zones(demanded_, *scene_, *world_))
+                             : ordered_json();
   json["recoveries"] = state_.recoveries;
   json["objects"] = objects_json();
   const double visible = state_.percepts_following > 0 ? static_cast<double>(state_.percepts_visible) /

@@ -277,6 +277,28 @@ TEST_F(SummaryTest, CountsErrorsAsNotSuccessfulAndWhatWasOnlyBelieved) {
   EXPECT_EQ(written.at("phases").at("objects grasped").at("runs"), 3);
 }
 
+TEST_F(SummaryTest, CountsWhatThePlannerDidNotNotice) {
+  json report = example_report();
+  report["all_in_zones"] = true;
+  std::ofstream(folder_.path() / "report.json") << report;
+  EXPECT_FALSE(read_result(folder_.path(), 1).unnoticed()) << "the planner ended it as succeeded";
+  report["believed"] = "failed";
+  std::ofstream(folder_.path() / "report.json") << report;
+  EXPECT_FALSE(read_result(folder_.path(), 70).unnoticed()) << "the run has failed";
+  EXPECT_EQ(to_table(summarise(variants_, results_), 80).find("unnoticed"), std::string::npos);
+  results_[1] = read_result(folder_.path(), 1);
+  const auto summaries = summarise(variants_, results_);
+  EXPECT_EQ(summaries.front().unnoticed_successes, 1u);
+  EXPECT_EQ(summaries.front().false_successes, 1u);
+  EXPECT_EQ(to_json(summaries).at(0).at("unnoticed_successes"), 1);
+  const std::string table = to_table(summaries, 120);
+  EXPECT_NE(table.find("  not true  unnoticed  errors"), std::string::npos) << table;
+  EXPECT_NE(table.find("(unnoticed: missions that ended without success"), std::string::npos) << table;
+  const std::string page = make_page({"short", "about", 4, variants_, results_});
+  EXPECT_NE(page.find("true, but not noticed"), std::string::npos);
+  EXPECT_NE(page.find("&quot;outside&quot; (all objects lie in their zones)"), std::string::npos);
+}
+
 TEST_F(SummaryTest, TheTerminalNamesTheRunWithTheLongestRecovery) {
   results_[1].longest_recovery = {12.0, 45.25, "drop: \"quoted\", and more"};
   EXPECT_NE(

@@ -134,6 +134,23 @@ TEST(Report, NamesThePlannersReason) {
   EXPECT_EQ(mission["reason"], "the planner gave up: more than 60 recoveries");
 }
 
+TEST(Report, KnowsAMissionThatThePlannerDidNotSeeSucceed) {
+  const auto all_in_zones = [](const Story& story, const std::string& mission) {
+    return report_of(story, {}, {}, {}, mission).mission["all_in_zones"];
+  };
+  const std::string both = "{sequence: [green, red], line_colour: blue}";
+  Story story;
+  story.mission_end = msg::kMissionFailed;
+  EXPECT_EQ(all_in_zones(story, both), true);
+  EXPECT_EQ(all_in_zones(story, "{sequence: [green, green], line_colour: blue}"), false) << "there is one green object";
+  EXPECT_EQ(all_in_zones(story, "{sequence: [], line_colour: blue}"), json());
+  story.red_drop_distance_m = 0.31;
+  EXPECT_EQ(all_in_zones(story, both), false);
+  EXPECT_EQ(all_in_zones(story, "{sequence: [green], line_colour: blue}"), true) << "the red one is not demanded";
+  story.truth = false;
+  EXPECT_EQ(all_in_zones(story, both), json());
+}
+
 TEST(Report, AMissionWithoutObjectsSucceedsAtTheEndOfTheLineOnly) {
   Story story;
   story.objects_in_mission = 0;

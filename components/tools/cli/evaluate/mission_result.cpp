@@ -66,6 +66,7 @@ MissionResult read_result(const std::filesystem::path& folder, int status, const
   }
   result.success = flag_field(report, "success");
   result.believed = text_field(report, "believed") == "succeeded";
+  result.all_in_zones = flag_field(report, "all_in_zones");
   result.reason = text_field(report, "reason");
   const double run_s = number_field(report, "sim_time_s"), mission_s = number_field(report, "mission_time_s");
   result.mission_time_s = std::isfinite(mission_s) ? mission_s : run_s;

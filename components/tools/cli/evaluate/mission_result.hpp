@@ -29,6 +29,7 @@ struct MissionResult {
   bool refused = false;              ///< before its start, because of its files and seed; `reason` tells why
   bool success = false;              ///< by ground truth
   bool believed = false;             ///< the planner ended the mission as succeeded
+  bool all_in_zones = false;         ///< all demanded objects lie in their zones, by ground truth
   std::string reason;                ///< why it did not succeed
   double mission_time_s = kUnknown;  ///< until the planner ended the mission, or else until the run ended
   double wall_time_s = kUnknown;
@@ -45,6 +46,8 @@ struct MissionResult {
   /// The run itself failed, so that nothing is known about the mission. A repetition may succeed, unlike one of a run
   /// that was refused.
   [[nodiscard]] bool error() const { return !refused && (incomplete || (exit_status != 0 && exit_status != 1)); }
+  /// All objects are where they belong, and the planner did not end the mission as succeeded.
+  [[nodiscard]] bool unnoticed() const { return !error() && !refused && all_in_zones && !believed; }
   /// What `reason` is, for people.
   [[nodiscard]] const char* kind() const { return error() ? "error: " : refused ? "refused: " : "failed: "; }
   /// The run did not fail, but its files could not be written.

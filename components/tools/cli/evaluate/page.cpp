@@ -56,20 +56,23 @@ std::string worst_recovery(const VariantSummary& summary) {
 std::string overview(const std::vector<VariantSummary>& summaries) {
   std::string html =
       "<div class=\"table\"><table><tr><th>variant</th><th class=\"n\">runs</th><th class=\"n\">succeeded</th>"
-      "<th>95 % interval</th><th class=\"n\">believed, but not true</th><th class=\"n\">errors</th>"
+      "<th>95 % interval</th><th class=\"n\">believed, but not true</th>"
+      "<th class=\"n\">true, but not noticed</th><th class=\"n\">errors</th>"
       "<th class=\"n\">refused</th>"
       "<th class=\"n\">median time</th><th class=\"n\">median placement</th><th class=\"n\">95 % of placements</th>"
       "<th class=\"n\">cost of transport</th><th class=\"n\">longest recovery</th></tr>\n";
   for (const auto& summary : summaries) {
     html += fmt::format(
         "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td>"
-        "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{} s</td><td class=\"n\">{} m</td><td "
+        "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{} s</td><td "
+        "class=\"n\">{} m</td><td "
         "class=\"n\">{} m</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
         xml_escaped(summary.name), summary.runs, summary.successes(),
-        interval_text(summary.successes(), summary.begun()), summary.false_successes, summary.errors, summary.refused,
-        known(summary.mission_time_s.at(0.5), 1), known(summary.placement_m.at(0.5), 3),
-        known(summary.placement_m.at(0.95), 3), known(summary.cost_of_transport.at(0.5), 2), worst_recovery(summary));
+        interval_text(summary.successes(), summary.begun()), summary.false_successes, summary.unnoticed_successes,
+        summary.errors, summary.refused, known(summary.mission_time_s.at(0.5), 1),
+        known(summary.placement_m.at(0.5), 3), known(summary.placement_m.at(0.95), 3),
+        known(summary.cost_of_transport.at(0.5), 2), worst_recovery(summary));
   }
   return html + "</table></div>\n";
 }
@@ -195,7 +198,9 @@ std::string run_rows(const PageContent& content, bool successes) {
         "class=\"n\">{}</td><td>{}</td><td><code>{}</code></td></tr>\n",
         xml_escaped(result.folder.string()), result.seed, xml_escaped(content.variants.at(result.variant).name),
         successes ? "" : "bad",
-        successes ? "succeeded" : xml_escaped((result.error() || result.refused ? result.kind() : "") + result.reason),
+        successes ? "succeeded"
+                  : xml_escaped((result.error() || result.refused ? result.kind() : "") + result.reason +
+                                (result.unnoticed() ? " (all objects lie in their zones)" : "")),
         known(result.mission_time_s, 1), known(worst_m, 2), result.recoveries,
         known(result.longest_recovery.duration_s, 1), xml_escaped(result.longest_recovery.cause),
         xml_escaped(result.command));

@@ -30,6 +30,7 @@ std::vector<TableColumn> table_columns() {
           {"succeeded", [](const Summary& s) { return fmt::to_string(s.successes()); }},
           {"95 %", interval_text},
           {"not true", [](const Summary& s) { return fmt::to_string(s.false_successes); }, true},
+          {"unnoticed", [](const Summary& s) { return fmt::to_string(s.unnoticed_successes); }, true},
           {"errors", [](const Summary& s) { return fmt::to_string(s.errors); }, true},
           {"refused", [](const Summary& s) { return fmt::to_string(s.refused); }, true},
           {"time", [](const Summary& s) { return known(s.mission_time_s.at(0.5), 1); }},
@@ -57,13 +58,14 @@ std::string to_table(const std::vector<VariantSummary>& summaries, std::size_t c
   for (const auto& summary : summaries) name_width = std::max(name_width, summary.name.size());
   std::string heading;
   std::vector<std::string> rows(summaries.size());
-  bool some_untrue = false;
+  bool some_untrue = false, some_unnoticed = false;
   for (const TableColumn& column : table_columns()) {
     std::vector<std::string> values;
     for (const auto& summary : summaries) values.push_back(column.value(summary));
     const auto is_zero = [](const std::string& value) { return value == "0"; };
     if (column.only_if_any && std::all_of(values.begin(), values.end(), is_zero)) continue;
     some_untrue = some_untrue || column.heading == "not true";
+    some_unnoticed = some_unnoticed || column.heading == "unnoticed";
     std::size_t cell = column.heading.size();
     for (const auto& value : values) cell = std::max(cell, value.size());
     heading += fmt::format("{:>{}}", column.heading, cell + kGap);
@@ -84,6 +86,10 @@ std::string to_table(const std::vector<VariantSummary>& summaries, std::size_t c
     text +=
         "(not true: missions that the robot believed to have succeeded, and that had not;\n"
         "index.html names them)\n";
+  if (some_unnoticed)
+    text +=
+        "(unnoticed: missions that ended without success although all objects lie in their\n"
+        "zones; index.html names them)\n";
   const VariantSummary* worst = worst_of(summaries);
   if (!worst) return text;
   return text + fmt::format("longest recovery: {:.1f} s, seed {}{}, {:.1f} s after the start, {}\n",

@@ -57,6 +57,7 @@ void add(VariantSummary& summary, const MissionResult& result) {
   summary.errors += result.error() ? 1 : 0;
   summary.refused += result.refused ? 1 : 0;
   summary.false_successes += result.believed && !result.success ? 1 : 0;
+  summary.unnoticed_successes += result.unnoticed() ? 1 : 0;
   for (std::size_t phase = 0; phase < std::size(kPhases); ++phase)
     summary.reached[phase] += reached(result, phase) ? 1 : 0;
   if (result.error() || result.refused) return;
@@ -108,6 +109,7 @@ ordered_json to_json(const std::vector<VariantSummary>& summaries) {
                     {"errors", summary.errors},
                     {"refused", summary.refused},
                     {"false_successes", summary.false_successes},
+                    {"unnoticed_successes", summary.unnoticed_successes},
                     {"phases", phases},
                     {"placement_m", to_json(summary.placement_m)},
                     {"mission_time_s", to_json(summary.mission_time_s)},

@@ -24,12 +24,13 @@ struct Distribution {
 struct VariantSummary {
   std::string name;
   std::size_t runs = 0;
-  std::size_t errors = 0;            ///< runs that ended with an error; they count as not successful
-  std::size_t refused = 0;           ///< runs that were refused before their start; they do not count as missions
-  std::size_t false_successes = 0;   ///< missions that only the robot believed to have succeeded
-  std::vector<std::size_t> reached;  ///< runs that reached each of kPhases
-  Distribution placement_m;          ///< distance of each dropped object from the centre of its zone
-  Distribution mission_time_s;       ///< of successful missions
+  std::size_t errors = 0;               ///< runs that ended with an error; they count as not successful
+  std::size_t refused = 0;              ///< runs that were refused before their start; they do not count as missions
+  std::size_t false_successes = 0;      ///< missions that only the robot believed to have succeeded
+  std::size_t unnoticed_successes = 0;  ///< missions with all objects in their zones, which the robot did not notice
+  std::vector<std::size_t> reached;     ///< runs that reached each of kPhases
+  Distribution placement_m;             ///< distance of each dropped object from the centre of its zone
+  Distribution mission_time_s;          ///< of successful missions
   Distribution cross_track_m;
   Distribution pose_error_m;
   Distribution cost_of_transport;
