@@ -14,7 +14,8 @@
 # Example: scripts/perception_study.sh --only blur,late --seeds 20
 # It does the first seed of all errors, then the second one, and so on, and writes study.png, study.svg, study.csv and
 # study.md after each seed: Ctrl-C at any time leaves curves of what is done. Exit status: 0; 1 if missions ended with
-# an error; 64 wrong option; 69 a program is missing; 74 the disk is full or a file cannot be written; 130 Ctrl-C.
+# an error; 64 wrong option; 69 a program is missing; 74 the disk is full or a file cannot be written; 78 a file is
+# wrong; 130 Ctrl-C. A study whose first evaluation is refused leaves nothing behind.
 set -euo pipefail
 
 fail() { echo "perception_study: $2" >&2; exit "$1"; }
@@ -25,13 +26,13 @@ factors=$source/tests/bench/perception_study/factors.yaml
 more=()
 while [ $# -gt 0 ]; do
   case "$1" in
-    --help) sed -n '2,18s/^# //p' "$0"; exit 0 ;;
+    --help) sed -n '2,19s/^# //p' "$0"; exit 0 ;;
     --quick) quick=1; shift; continue ;;
     --) shift; more=("$@"); break ;;
     --seeds|--only|--scenario|--output|--time-limit|--jobs|--programs|--factors) ;;
     *) fail 64 "unknown option $1 (see --help)" ;;
   esac
-  if [ $# -lt 2 ]; then fail 64 "$1 needs a value (see --help)"; fi
+  if [ $# -lt 2 ] || [ -z "$2" ]; then fail 64 "$1 needs a value (see --help)"; fi
   case "$1" in
     --seeds) whole --seeds "$2"; seeds=$2 ;;
     --jobs) whole --jobs "$2"; jobs=$2 ;;
@@ -55,6 +56,21 @@ limit=${limit:-$([ -n "$quick" ] && echo 240 || echo 450)}
 output=${output:-$source/build/perception_study}
 jobs=${jobs:-$(nproc)}
 
+# Wrong names are refused before the programs are built, which takes minutes. The programs check files and names, too.
+[ -r "$factors" ] || fail 64 "--factors: cannot read $factors"
+known=$(grep -oP "\bname[\"']?:\s*[\"']?\K[\w.-]+" "$factors" || true)
+IFS=, read -r -a only_names <<<"$only"
+for name in "${only_names[@]}"; do
+  if [ -n "$known" ] && ! grep -qxF -e "$name" <<<"$known"; then
+    fail 64 "--only: found '$name', accepted $(paste -sd , <<<"$known" | sed 's/,/, /g')"
+  fi
+done
+scenarios=${CONSTRICTOR_DATA:-$source}/sim/scenarios
+if [ -z "$programs" ] && [ -d "$scenarios" ] && [ ! -f "$scenario" ] && [ ! -f "$scenarios/$scenario.yaml" ]; then
+  fail 64 "--scenario: found '$scenario', accepted a file or one of $(basename -s .yaml "$scenarios"/*.yaml |
+    paste -sd , | sed 's/,/, /g')"
+fi
+
 if [ -z "$programs" ]; then
   "$source/scripts/setup.sh" core tests
   "$source/scripts/build.sh" --tests programs draw_perception_study
@@ -64,17 +80,19 @@ for program in constrictor draw_perception_study; do
   [ -x "$programs/$program" ] ||
     fail 69 "$programs/$program is missing: build it with scripts/build.sh --tests $program"
 done
-[ -r "$factors" ] || fail 64 "--factors: cannot read $factors"
 table=$("$programs/draw_perception_study" --factors "$factors" --list) || exit 64
 if [ -n "$only" ]; then
   chosen=""
-  for name in ${only//,/ }; do
-    row=$(grep -P "^$name\t" <<<"$table") ||
-      fail 64 "--only: found $name, accepted $(cut -f 1 <<<"$table" | paste -sd , | sed 's/,/, /g')"
+  for name in "${only_names[@]}"; do
+    row=$(awk -F '\t' -v name="$name" '$1 == name' <<<"$table")
+    [ -n "$row" ] ||
+      fail 64 "--only: found '$name', accepted $(cut -f 1 <<<"$table" | paste -sd , | sed 's/,/, /g')"
     chosen+=$row$'\n'
   done
   table=${chosen%$'\n'}
 fi
+made=""
+[ -e "$output" ] || made=1
 mkdir -p "$output" 2>/dev/null || fail 74 "--output: cannot make the folder $output"
 [ -w "$output" ] || fail 74 "--output: cannot write into $output"
 
@@ -84,6 +102,8 @@ what="$scenario --time-limit $limit ${more[*]}"
 if [ -e "$output/study.conf" ] && [ "$(cat "$output/study.conf")" != "$what" ]; then
   fail 64 "--output: $output holds a study of '$(cat "$output/study.conf")', not of '$what'; choose another folder"
 fi
+begins=""
+[ -e "$output/study.conf" ] || begins=1
 echo "$what" >"$output/study.conf" || fail 74 "cannot write into $output"
 
 levels=$(($(cut -f 2 <<<"$table" | paste -sd +)))
@@ -114,6 +134,13 @@ draw() {
   "$programs/draw_perception_study" --factors "$factors" --draw "$output" --title "$title" ||
     fail 74 "the curves could not be written into $output"
 }
+# Removes what a study has left whose first evaluation was refused, so that the corrected command may use the folder.
+forget_study() {
+  cat "$output/$1.log" >&2
+  rm -f "$output/$1.log" "$output/study.conf"
+  if [ -d "$output/$1" ]; then rmdir --ignore-fail-on-non-empty "$output/$1"; fi
+  if [ -n "$made" ]; then rmdir --ignore-fail-on-non-empty "$output"; fi
+}
 interrupted="" child="" errors=0
 # The evaluation stops its missions and keeps those that are done. It runs in the background, because bash would
 # otherwise carry out the trap only after its end; in the background it ignores Ctrl-C, so that SIGTERM is sent to it.
@@ -140,6 +167,12 @@ evaluate_factor() {
     echo "perception_study: interrupted; the same command goes on (folder: $output)" >&2
     exit 130
   fi
+  # An evaluation that was refused as a whole has made no page.
+  if [ -n "$begins" ] && [[ "$status" =~ ^(64|78)$ ]] && [ ! -e "$output/$name/index.html" ]; then
+    forget_study "$name"
+    fail "$status" "the first evaluation was refused, so that the study has not begun; correct the command"
+  fi
+  begins=""
   case "$status" in
     0) ;;
     70) errors=$((errors + 1)) ;;

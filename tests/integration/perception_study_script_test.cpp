@@ -89,7 +89,11 @@ TEST_F(PerceptionStudy, NamesWhatIsWrong) {
   refused({"--blur"}, 64, "unknown option --blur");
   refused({"--seeds"}, 64, "--seeds: found --, accepted a whole number from 1");
   refused({"--seeds", "0"}, 64, "--seeds: found 0, accepted a whole number from 1");
-  refused({"--only", "noise,fog"}, 64, "--only: found fog, accepted noise, slip");
+  refused({"--only", "noise,fog"}, 64, "--only: found 'fog', accepted noise, slip");
+  refused({"--only", "nois."}, 64, "--only: found 'nois.', accepted noise, slip");
+  refused({"--only", ""}, 64, "--only needs a value");
+  // Before the programs are built.
+  refused({"--only", "fog", "--programs", dir_.string()}, 64, "--only: found 'fog', accepted noise, slip");
   refused({"--programs", dir_.string()}, 69, "constrictor is missing");
   refused({"--factors", "/nowhere"}, 64, "--factors: cannot read /nowhere");
   refused({"--output", "/proc/study"}, 74, "--output: cannot make the folder /proc/study");
@@ -99,6 +103,40 @@ TEST_F(PerceptionStudy, NamesWhatIsWrong) {
   write("factors.yaml", factors + ", reference: 0}]\n");
   write("60_ticks.yaml", "noise: [");
   refused({"--seeds", "1"}, 78, "its log is");
+}
+
+TEST_F(PerceptionStudy, ARefusedStudyLeavesItsFolderForTheCorrectedCommand) {
+  Process wrong = study({"--seeds", "1"}, "nosuch.yaml");
+  EXPECT_EQ(wrong.wait(30s), 78) << wrong.output();
+  EXPECT_NE(wrong.errors().find("nosuch.yaml"), std::string::npos) << "evaluate's reason: " << wrong.errors();
+  EXPECT_NE(wrong.errors().find("the study has not begun"), std::string::npos) << wrong.errors();
+  EXPECT_FALSE(fs::exists(dir_ / "study"));
+  fs::create_directory(dir_ / "study");
+  write("study/mine", "");
+  Process again = study({"--seeds", "1"}, "nosuch.yaml");
+  EXPECT_EQ(again.wait(30s), 78) << again.output();
+  EXPECT_EQ(std::distance(fs::directory_iterator(dir_ / "study"), fs::directory_iterator()), 1) << "what was there";
+  Process right = study({"--seeds", "1", "--only", "noise"});
+  ASSERT_EQ(right.wait(120s), 0) << right.output() << right.errors();
+  // A study that has begun stays, whatever is asked of it later.
+  write("60_ticks.yaml", "noise: [");
+  Process later = study({"--seeds", "1", "--only", "noise"});
+  EXPECT_NE(later.wait(30s), 0);
+  EXPECT_NE(later.errors().find("its log is"), std::string::npos) << later.errors();
+  EXPECT_TRUE(fs::exists(dir_ / "study/study.conf"));
+  EXPECT_EQ(missions(), 3);
+}
+
+// It is refused before it installs and builds anything.
+TEST_F(PerceptionStudy, AMisspeltScenarioIsNamedAtOnce) {
+  Process process({testing::source_path("scripts/perception_study.sh"), "--scenario", "shrot", "--output",
+                   (dir_ / "study").string()},
+                  environment_);
+  EXPECT_EQ(process.wait(10s), 64) << process.output();
+  EXPECT_NE(process.errors().find("--scenario: found 'shrot', accepted a file or one of boxes, case_study, "),
+            std::string::npos)
+      << process.errors();
+  EXPECT_FALSE(fs::exists(dir_ / "study"));
 }
 
 }  // namespace
