@@ -13,6 +13,7 @@
 
 #include "client/request_client.hpp"
 #include "client/run_registry.hpp"
+#include "constrictor/constants.hpp"
 #include "constrictor/messages.hpp"
 #include "cyclone/endpoint.hpp"
 #include "cyclone/wait_set.hpp"
@@ -20,6 +21,7 @@
 
 namespace {
 
+namespace constants = constrictor::constants;
 namespace msg = constrictor::msg;
 using constrictor::dds::Reader;
 
@@ -98,8 +100,10 @@ class Planner {
       logic_.take(retrieval::GoalStatus{own(status.goal_id), status.task, status.goal_state, status.carrying});
     });
     events_.take([this](const msg::TaskEvent& event) {
-      if (event.event != msg::kEventNone)
-        std::printf("event %d of task %d, colour %d\n", event.event, event.task, event.colour);
+      if (event.event != msg::kEventNone) {
+        std::printf("event \"%s\" of task \"%s\", colour %s\n", words_of(constants::kEvent, event.event).c_str(),
+                    words_of(constants::kTask, event.task).c_str(), name_of(constants::kColour, event.colour));
+      }
       logic_.take(retrieval::GoalEvent{own(event.goal_id), event.event, event.goal_state, event.colour});
     });
     line_.take([this](const msg::LinePercept& line) {
@@ -129,8 +133,8 @@ class Planner {
   }
 
   void send(const retrieval::Order& order) {
-    std::printf("at %.1f s: %s (task %d, goal %llu)\n", now_s_, logic_.stage().c_str(), order.task,
-                static_cast<unsigned long long>(order.goal));
+    std::printf("at %.1f s: %s (task \"%s\", goal %llu)\n", now_s_, logic_.stage().c_str(),
+                words_of(constants::kTask, order.task).c_str(), static_cast<unsigned long long>(order.goal));
     msg::Request request = constrictor::task_request(order.task);
     request.goal_id = order.goal;
     request.parameters.line_colour = order.line_colour;
