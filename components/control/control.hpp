@@ -10,6 +10,7 @@
 #include "component/parameters.hpp"
 #include "component/robot_views.hpp"
 #include "control/control_method.hpp"
+#include "control/moving_limits.hpp"
 #include "robot/safety_gate.hpp"
 
 namespace constrictor {
@@ -32,11 +33,12 @@ struct ControlState {
 /// first trajectory, with a trajectory that no method accepts, and with one older than `hold_after_ticks`. It relaxes
 /// the joints when the trajectory is older than `relax_after_ticks`. Every command passes the safety gate: during an
 /// emergency stop, and while no source has authority after one has had it, the gate holds the posture.
-class Control : public TunableComponent<ControlState, ControlConfig> {
+class Control : public TunableComponent<ControlState, ControlConfig>, public RobotJudge {
  public:
   Control(Wiring& wiring, const Setup& setup, MethodRegistry methods = {});
   [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
+  [[nodiscard]] RobotVerdict judge_robot() const override { return judge_joints(robot_, config_); }
 
  private:
   /// What control does in this tick.

@@ -97,6 +97,31 @@ TEST_F(RunCommand, RefusesASceneInWhichTheMissionCannotSucceed) {
     EXPECT_NE(errors.find(error), std::string::npos) << error << " in: " << errors;
 }
 
+TEST_F(RunCommand, RefusesARobotThatDoesNotMove) {
+  std::ifstream from(source_path("components/lib/robot/mamba.yaml"));
+  const std::string mamba{std::istreambuf_iterator<char>(from), {}};
+  const std::string robot = (dir_ / "robot.yaml").string();
+  const auto check = [&](const std::string& speed_rad_s) {
+    write("robot.yaml", replaced(mamba, "max_speed_rad_s: 4.0", "max_speed_rad_s: " + speed_rad_s));
+    Process checked = command({"check", "line", "--robot", robot});
+    const auto status = checked.wait(30s);
+    return std::pair(status, checked.errors());
+  };
+  const auto [refused, why] = check("0.1");
+  EXPECT_EQ(refused, exit_status::kConfiguration);
+  EXPECT_NE(why.find(robot + ": the robot mamba does not move: joints.max_speed_rad_s: found 0.1, accepted at least"),
+            std::string::npos)
+      << why;
+  const auto [accepted, warning] = check("0.9");
+  EXPECT_EQ(accepted, exit_status::kOk) << warning;
+  EXPECT_NE(warning.find("warning: " + robot + ": the robot mamba hardly moves: joints.max_speed_rad_s"),
+            std::string::npos)
+      << warning;
+  const auto [moves, silence] = check("4.0");
+  EXPECT_EQ(moves, exit_status::kOk) << silence;
+  EXPECT_EQ(silence, "");
+}
+
 TEST_F(RunCommand, EvaluateCountsRefusedDrawsApart) {
   std::ifstream from(source_path("sim/scenarios/wide.yaml"));
   const std::string text{std::istreambuf_iterator<char>(from), {}};

@@ -15,6 +15,7 @@
 #include "component/hardware_link.hpp"
 #include "component/mission.hpp"
 #include "component/object_bounds.hpp"
+#include "component/robot_bounds.hpp"
 
 namespace constrictor {
 namespace {
@@ -155,6 +156,12 @@ Findings check_components(const HostOptions& options, const std::vector<Componen
       if (latency != options.latency_ticks.end())
         hello.timing.latency = std::max(hello.timing.latency, latency->second);
       hellos.push_back(std::move(hello));
+      if (const auto* judge = dynamic_cast<const RobotJudge*>(built.component.get())) {
+        const RobotVerdict verdict = judge->judge_robot();
+        const auto line = [&](const std::string& what) { return setup.robot_file.string() + ": " + what; };
+        for (const auto& what : verdict.refusals) findings.errors.push_back(factory.name + ": " + line(what));
+        for (const auto& what : verdict.warnings) findings.warnings.push_back(line(what));
+      }
       objects.ask(std::move(built), setup.mission);
     } catch (const std::exception& error) {
       if (reported.insert(error.what()).second) findings.errors.push_back(factory.name + ": " + error.what());

@@ -22,7 +22,8 @@ struct Findings {
 /// nothing, and destroys it again. Joins no DDS domain and writes no file. Returns one error "NAME: what is wrong" for
 /// each component that cannot be built; an error that several components report is returned once.
 /// Also compares the latencies of these components with the depths of the topics between them, and asks the components
-/// whether they can deal with the objects that the mission demands, if the scene is known here.
+/// whether they can deal with the objects that the mission demands, if the scene is known here, and whether they can
+/// move the robot.
 [[nodiscard]] Findings check_components(const HostOptions& options, const std::vector<ComponentFactory>& factories);
 
 /// The topics that the components of a process exchange with other processes, one line each: "reads TOPIC" or "writes

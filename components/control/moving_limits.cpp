@@ -1,0 +1,86 @@
+#include "control/moving_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "robot/u_arms.hpp"
+
+namespace constrictor {
+namespace {
+
+// Measured with `mamba` (README.md): with less than the first value it covers less than a twentieth of its usual way,
+// and with less than the second one less than a quarter.
+constexpr double kLeastRange_rad = 0.18, kEnoughRange_rad = 0.25;  // to each side
+constexpr double kLeastTorque_nm = 0.45, kEnoughTorque_nm = 0.6;
+constexpr double kLeastRate = 0.17, kEnoughRate = 0.212;  // by the rate of the wave at its highest frequency
+
+/// A bound for a value of most yaw joints.
+struct JointBound {
+  const char* key;
+  double JointModel::*member;
+  double sign;    ///< -1: the robot file has a negative value, whose amount counts
+  double least;   ///< with less the robot does not move
+  double enough;  ///< with less it hardly moves
+  const char* why;
+};
+
+/// The median, so that one weak joint does not count: the others move the robot.
+double of_most_joints(const RobotModel& robot, double JointModel::*member) {
+  std::vector<double> values;
+  for (const std::size_t j : robot.yaw_joints()) values.push_back(robot.joints[j].*member);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void judge_joint(const RobotModel& robot, const JointBound& bound, RobotVerdict& verdict) {
+  const double found = of_most_joints(robot, bound.member);
+  const double amount = bound.sign * found;
+  if (amount >= bound.enough) return;
+  const bool refused = amount < bound.least;
+  const std::string accepted =
+      refused ? fmt::format("accepted at {}", bound.sign < 0.0 ? "most" : "least") : "it moves well from";
+  (refused ? verdict.refusals : verdict.warnings)
+      .push_back(fmt::format("the robot {} {}: joints.{}: found {:g}, {} {:.2g}: {}", robot.name,
+                             refused ? "does not move" : "hardly moves", bound.key, found, accepted,
+                             bound.sign * (refused ? bound.least : bound.enough), bound.why));
+}
+
+/// [rad/s] Largest rate of a yaw joint in the wave of `travel` at the highest frequency that control uses.
+double wave_rate_rad_s(const RobotModel& robot, const ControlConfig& config) {
+  const double link_m = link_share(robot) * 0.178;
+  const double swing_rad = 2.0 * config.travel.amplitude_rad *
+                           std::sin(std::numbers::pi * std::min(0.5, link_m / config.travel.wavelength_m));
+  return 2.0 * std::numbers::pi * config.most_hz * swing_rad;
+}
+
+}  // namespace
+
+RobotVerdict judge_joints(const RobotModel& robot, const ControlConfig& config) {
+  RobotVerdict verdict;
+  if (robot.yaw_joints().empty() || config.travel.method != 0) return verdict;  // measured for undulation
+  const double share = link_share(robot);                                       // shorter links bend less
+  const double least_rad = share * kLeastRange_rad, enough_rad = share * kEnoughRange_rad;
+  constexpr const char* kBothSides = "its wave bends each joint to both sides";
+  // The friction of the ground to the side, by which the body pushes itself forwards, grows with the weight.
+  constexpr double kTuned_kg_m = 0.3 / 0.089;
+  const double weight = robot.module_mass_kg / robot.module_length_m / kTuned_kg_m;
+  const double rate_rad_s = wave_rate_rad_s(robot, config) / config.speed_share;
+  for (const JointBound& bound :
+       {JointBound{"max_rad", &JointModel::max_rad, 1.0, least_rad, enough_rad, kBothSides},
+        JointBound{"min_rad", &JointModel::min_rad, -1.0, least_rad, enough_rad, kBothSides},
+        JointBound{"max_torque_nm", &JointModel::max_torque_nm, 1.0, weight * kLeastTorque_nm,
+                   weight * kEnoughTorque_nm, "weaker joints do not push a body of this mass over the ground"},
+        JointBound{"max_speed_rad_s", &JointModel::max_speed_rad_s, 1.0, kLeastRate * rate_rad_s,
+                   kEnoughRate * rate_rad_s,
+                   "slower joints do not follow its wave, which a smaller wave.most_hz of control makes slower"}})
+    judge_joint(robot, bound, verdict);
+  return verdict;
+}
+
+}  // namespace constrictor
