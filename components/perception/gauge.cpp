@@ -16,7 +16,6 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMeasuredRange_m = 1.5;  // objects that are nearer show their size
 constexpr double kBeside_sd = -2.0;  // of the flat part beside an upright one, which the same region shows to be lower
-constexpr double kLeastAbove_m = 0.02;  // an object that is hardly higher than the camera shows no range by its height
 
 /// Probability that a normally distributed quantity, measured this number of standard deviations above a bound, is
 /// above it.
@@ -234,74 +233,6 @@ bool Gauge::is_behind_object(double left, double right) const {
   look(std::max(right_ - width, right), right_ - gap);
   if (!std::isfinite(beside_m)) return false;
   return beside_m > kFarther * lower_edge_range(left_, right_, cut) + kFarther_m;  // false for NaN
-}
-
-bool Gauge::ends_in_zone(double range_m) const {
-  constexpr double kFar_m = 1.5;  // nearer, the zone is several pixels high, and is told from the object
-  constexpr double kNarrow = 0.88;
-  const auto narrower = [&](const ObjectSize& size) { return !(range_m >= kNarrow * range_by_width(size)); };
-  return range_m > kFar_m && sizes_.known() && std::all_of(sizes_.sizes.begin(), sizes_.sizes.end(), narrower);
-}
-
-double Gauge::range_by_width(const ObjectSize& size) const {
-  const double sine = std::sin(0.5 * (left_ - right_));
-  return size.known() && sine > 1e-3 ? size.radius_m * (1.0 / sine - 1.0) : kNan;
-}
-
-double Gauge::range_by_height(double height_m, double slope) const {
-  const double above_m = height_m - camera_.height_m();
-  return slope > 1e-3 && above_m >= kLeastAbove_m ? above_m / slope : kNan;  // NaN: no edge is in view
-}
-
-double Gauge::upper_slope() const {
-  std::vector<double> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
-  return slopes.empty() ? kNan : median(slopes);
-}
-
-ObjectSize Gauge::likeliest_size(const msg::Blob& blob, double slope, bool on_zone) const {
-  constexpr double kShare = 0.15;     // standard deviation of a range by the width, as a share of it
-  constexpr double kPixels = 1.0;     // standard deviation of an edge
-  constexpr double kHeight_m = 0.02;  // standard deviation of a known height
-  constexpr double kOlder = 1.0;      // cost of a size that was not measured last
-  if (sizes_.known_count() < 2) return sizes_.first_known();
-  const double pixel_rad = kPixels / camera_.focal_pixels();
-  const bool whole = std::isfinite(slope) && !blob.cut_left && !blob.cut_right && !blob.cut_top;
-  const auto [near_m, far_m] = on_zone ? ground_around() : std::pair(0.0, std::numeric_limits<double>::infinity());
-  ObjectSize best;
-  double best_cost = std::numeric_limits<double>::infinity();
-  for (const ObjectSize& size : sizes_.sizes) {
-    if (!size.known()) continue;
-    double cost = best.known() ? kOlder : 0.0;
-    const double range_m = range_by_width(size);
-    if (whole && std::isfinite(range_m)) {
-      const double range_sd_m = range_m * std::hypot(kShare, pixel_rad / (left_ - right_));
-      const double sd_m = std::hypot(range_sd_m * slope, range_m * pixel_rad, kHeight_m);
-      const double outside_m = std::max({near_m - range_m, range_m - far_m, 0.0});
-      cost += std::pow((camera_.height_m() + range_m * slope - size.height_m) / sd_m, 2.0);
-      cost += std::pow(outside_m / range_sd_m, 2.0);
-    }
-    if (cost >= best_cost) continue;
-    best = size;
-    best_cost = cost;
-  }
-  return best;
-}
-
-std::pair<double, double> Gauge::ground_around() const {
-  bool cut = false;
-  const double near_m = lower_edge_range(left_, right_, cut);
-  const auto flat = zone();
-  const bool whole = flat && !flat->cut_left && !flat->cut_right && std::isfinite(flat->width_m);
-  return {std::isfinite(near_m) && !cut ? near_m : 0.0,
-          std::isfinite(near_m) && whole ? near_m + flat->width_m : std::numeric_limits<double>::infinity()};
-}
-
-double Gauge::range_by_size(const msg::Blob& blob, bool on_zone) const {
-  const double slope = upper_slope();
-  const ObjectSize size = likeliest_size(blob, slope, on_zone);
-  const double by_width_m = range_by_width(size);
-  if (std::isfinite(by_width_m) && !blob.cut_left && !blob.cut_right) return by_width_m;
-  return range_by_height(size.known() ? size.height_m : config_.object_height_m, slope);
 }
 
 double Gauge::height_m(double range_m, bool cut_top) const {
