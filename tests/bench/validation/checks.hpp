@@ -11,7 +11,9 @@ namespace constrictor::validation {
 [[nodiscard]] Section check_contact_forces();  ///< contact forces against weight
 [[nodiscard]] Section check_gait_energy();     ///< work of the motors against friction
 [[nodiscard]] Section check_planar_model();    ///< the gait against the planar model of Liljebäck's book
+[[nodiscard]] Section check_servos();          ///< ripple, tracking and energy balance in the gait of navigation
 [[nodiscard]] Section check_convergence();     ///< step and iterations of the solver: gait, empty and loaded
 [[nodiscard]] Section check_speeds();          ///< speeds of the robot files beside published robots
+[[nodiscard]] Section check_mujoco();          ///< the same robot in MuJoCo, if it is installed
 
 }  // namespace constrictor::validation

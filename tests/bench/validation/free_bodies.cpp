@@ -1,4 +1,4 @@
-// Free fall, pendulum, momentum and energy: laws that no setting of the solver changes.
+// Free fall, pendulum, momentum, energy and sliding: laws that no setting of the solver changes.
 #include <cmath>
 #include <numbers>
 
@@ -147,11 +147,41 @@ void check_collision(Section& section) {
       {"collision on ice: angular momentum of robot and object", "N m s", before.angular_nms, after.angular_nms, 0.02});
 }
 
+/// [m] how far an object slides that a force has pushed for one tick in this direction.
+double coasted_m(BodyShape shape, double direction_rad, double force_n) {
+  Scenario scenario = with_object({0.1, 0.1, 0.06}, 0.5);
+  scenario.objects[0].shape = shape;
+  scenario.objects[0].yaw_rad = direction_rad;  // the object turns with the push: only the world's axes differ
+  World world(chain(2, JointAxis::kYaw), scenario);
+  hold(world, 0.0, 6.0, 0.2);
+  const Vector3d from = world.object_pose(0).translation();
+  world.apply_force(0, force_n * Vector3d(std::cos(direction_rad), std::sin(direction_rad), 0.0));
+  world.advance(kPeriod_s);
+  hold(world, 0.0, 6.0, 1.5);
+  return (world.object_pose(0).translation() - from).head<2>().norm();
+}
+
+void check_coasting(Section& section) {
+  constexpr double kForce_n = 40.0;
+  const double mu = Scenario{}.friction.object_ground;
+  const double speed_m_s = (kForce_n / 0.5 - mu * kG) * kPeriod_s;
+  const double law_m = speed_m_s * speed_m_s / (2.0 * mu * kG) + 0.5 * speed_m_s * kPeriod_s;
+  for (const auto& [shape, name] : {std::pair{BodyShape::kCylinder, "cylinder"}, std::pair{BodyShape::kBox, "box"}}) {
+    for (const double degrees : {0.0, 45.0}) {
+      section.cases.push_back({fmt::format("pushed {} on the ground, {:.0f}° to the axes of the world: way until it "
+                                           "rests, v²/(2 mu g)",
+                                           name, degrees),
+                               "m", law_m, coasted_m(shape, degrees * std::numbers::pi / 180.0, kForce_n), 0.02});
+    }
+  }
+}
+
 }  // namespace
 
 Section check_free_bodies() {
   Section section{"Free bodies",
-                  "Free fall, a pendulum, momentum and energy, compared with their laws. The solver integrates with "
+                  "Free fall, a pendulum, momentum, energy and a pushed object, compared with their laws. The solver "
+                  "integrates with "
                   "steps of 4 ms by the semi-implicit Euler method; its error in free fall is g t h / 2, and the "
                   "energy that the pendulum loses at a large amplitude falls with the square of h.",
                   {},
@@ -161,6 +191,7 @@ Section check_free_bodies() {
   check_pendulum(section);
   check_swinging_in_space(section);
   check_collision(section);
+  check_coasting(section);
   return section;
 }
 

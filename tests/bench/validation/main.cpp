@@ -19,8 +19,9 @@ using namespace constrictor::validation;
 const std::vector<std::pair<std::string, Section (*)()>>& groups() {
   static const std::vector<std::pair<std::string, Section (*)()>> all{
       {"bodies", check_free_bodies},      {"slopes", check_slopes},      {"joints", check_joints},
-      {"contacts", check_contact_forces}, {"energy", check_gait_energy}, {"planar", check_planar_model},
-      {"convergence", check_convergence}, {"speeds", check_speeds}};
+      {"contacts", check_contact_forces}, {"energy", check_gait_energy}, {"servos", check_servos},
+      {"planar", check_planar_model},     {"speeds", check_speeds},      {"mujoco", check_mujoco},
+      {"convergence", check_convergence}};
   return all;
 }
 

@@ -100,7 +100,8 @@ Section check_slopes() {
   Plot objects{"Objects: mu 0.4 in each direction", "slope [deg]", "acceleration [m/s^2]", {}};
   const double mu = Scenario{}.friction.object_ground;
   for (const auto& [shape, name] : {std::pair{BodyShape::kBox, "box"}, std::pair{BodyShape::kCylinder, "cylinder"}}) {
-    // 30° from the edges of the box, so that neither of ODE's two directions of friction is that of the slope.
+    // 30° from the edges of the box, so that neither of the two directions in which the engine `ode` bounds the
+    // friction is that of the slope.
     check_direction(section, objects, name, mu, 40.0 * kDegree,
                     [shape = shape](double slope_rad) { return slide_object(shape, slope_rad, 120.0 * kDegree); });
   }

@@ -1,0 +1,63 @@
+// The same robot with the same commands in MuJoCo. Built only if MuJoCo is installed; no_mujoco.cpp otherwise.
+#include <fmt/format.h>
+
+#include "bench/engines/engine_run.hpp"
+#include "bench/validation/checks.hpp"
+#include "support/project.hpp"
+
+namespace constrictor::validation {
+namespace {
+
+struct MujocoGround {
+  const char* name;
+  GroundContact contact;
+  bool required;
+};
+
+constexpr double kMujocoLimit = 0.1;
+
+}  // namespace
+
+Section check_mujoco() {
+  Section section{
+      "The same robot in MuJoCo",
+      fmt::format("The simulation with its default settings, and MuJoCo {} with a step of 0.5 ms and 100 iterations, "
+                  "receive the same commands, without feedback. Empty: undulation; loaded: the body closes around an "
+                  "object of 0.4 kg and carries it. \"Rectangle\" is MuJoCo's model with the same bound on the "
+                  "friction as in the simulation; \"exported\" is the model of `constrictor robot export`, whose bound "
+                  "is an ellipse and whose modules leave the ground again and again. Torque is the root mean square of "
+                  "the yaw joints.",
+                  mj_versionString()),
+      {},
+      {},
+      {}};
+  Table table{"Speed, torque and tracking error:",
+              {"motion", "engine", "speed [m/s]", "rms torque [Nm]", "tracking error [mrad]"},
+              {}};
+  const RobotModel robot = load_robot(testing::robot_path("mamba"));
+  const auto add_row = [&table](const char* motion, const std::string& engine, const EngineMeasurement& found) {
+    table.rows.push_back(
+        {motion, engine, shown(found.speed_m_s), shown(found.torque_rms_nm), shown(1e3 * found.tracking_rad)});
+  };
+  for (const char* motion : {"empty", "loaded"}) {
+    const EngineSettings world{SolverSettings{}, {}};
+    const EngineMeasurement usual = measure_engine(robot, motion, world);
+    add_row(motion, "simulation", usual);
+    add_row(motion, "simulation, 0.5 ms", measure_engine(robot, motion, converged(world)));
+    for (const auto& [name, contact, required] : {MujocoGround{"rectangle", GroundContact::kRectangle, true},
+                                                  MujocoGround{"exported", GroundContact::kExported, false}}) {
+      EngineSettings mujoco{{}, MujocoSettings{}};
+      mujoco.mujoco->ground = contact;
+      const EngineMeasurement other = measure_engine(robot, motion, converged(mujoco));
+      add_row(motion, fmt::format("MuJoCo, {}", name), other);
+      section.cases.push_back({fmt::format("{}, MuJoCo {}: speed", motion, name), "m/s", other.speed_m_s,
+                               usual.speed_m_s, kMujocoLimit, true, required});
+      section.cases.push_back({fmt::format("{}, MuJoCo {}: rms torque", motion, name), "Nm", other.torque_rms_nm,
+                               usual.torque_rms_nm, kMujocoLimit, true, required});
+    }
+  }
+  section.tables.push_back(table);
+  return section;
+}
+
+}  // namespace constrictor::validation
