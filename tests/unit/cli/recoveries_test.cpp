@@ -99,8 +99,10 @@ TEST(Recoveries, ADroppedObjectWasSeenOutsideItsZoneOrNotSeenOnIt) {
   const std::string unseen = "the dropped object was not seen on its zone";
   EXPECT_EQ(look(3), "inspect drop: " + outside);
   EXPECT_EQ(look(20.02), "inspect drop: " + unseen) << "the look has taken its time";
-  EXPECT_EQ(look(3, {{22.98, "object_found"}}), "inspect drop: " + unseen) << "the look has found it";
-  EXPECT_EQ(look(3, {{22.0, "object_found"}}), "inspect drop: " + outside) << "one look later";
+  EXPECT_EQ(look(3, {{22.96, "object_found"}, {22.98, "goal_succeeded"}}), "inspect drop: " + unseen)
+      << "the look has found it";
+  EXPECT_EQ(look(3, {{22.0, "goal_succeeded"}, {22.02, "goal_running"}}), "inspect drop: " + outside)
+      << "during the next look";
   EXPECT_EQ(causes(report(1, {{0, "drop"}, {20, "search object"}}, {{19.98, "dropping_done"}})),
             (Causes{{"drop: " + outside, 1}}));
 }

@@ -116,8 +116,7 @@ bool turns_to_another(const std::vector<Event>& events, double at_s) {
 /// waits for the end of the look, which has found the object or has taken its time. If that time is unknown, a look
 /// without an end counts as one that has not seen the object on its zone.
 const char* cause_after_drop(const StateStay& stay, const std::vector<Event>& at_end, const SearchLimits& limits) {
-  const bool found =
-      std::any_of(at_end.begin(), at_end.end(), [](const Event& event) { return event.name == "object_found"; });
+  const bool found = !at_end.empty() && at_end.back().name == "goal_succeeded";
   const bool in_time = std::isfinite(limits.inspect_s) && stay.end_s - stay.begin_s < limits.inspect_s - kAtOnce_s;
   return stay.state == "drop" || (in_time && !found) ? "the dropped object was seen outside its zone"
                                                      : "the dropped object was not seen on its zone";
