@@ -19,8 +19,11 @@ constexpr double kLeastAbove_m = 0.02;  // an object that is hardly higher than 
 bool Gauge::ends_in_zone(double range_m) const {
   constexpr double kFar_m = 1.5;  // nearer, the zone is several pixels high, and is told from the object
   constexpr double kNarrow = 0.88;
-  const auto narrower = [&](const ObjectSize& size) { return !(range_m >= kNarrow * range_by_width(size)); };
-  return range_m > kFar_m && sizes_.known() && std::all_of(sizes_.sizes.begin(), sizes_.sizes.end(), narrower);
+  const auto narrower = [&](const ObjectSize& size) {
+    return range_m < kNarrow * range_by_width(size);
+  };  // not for NaN
+  const std::vector<ObjectSize> sizes = sizes_.candidates();
+  return range_m > kFar_m && !sizes.empty() && std::all_of(sizes.begin(), sizes.end(), narrower);
 }
 
 double Gauge::range_by_width(const ObjectSize& size) const {
@@ -43,14 +46,14 @@ ObjectSize Gauge::likeliest_size(const msg::Blob& blob, double slope, bool on_zo
   constexpr double kPixels = 1.0;     // standard deviation of an edge
   constexpr double kHeight_m = 0.02;  // standard deviation of a known height
   constexpr double kOlder = 1.0;      // cost of a size that was not measured last
-  if (sizes_.known_count() < 2) return sizes_.first_known();
+  const std::vector<ObjectSize> sizes = sizes_.candidates();
+  if (sizes.size() < 2) return sizes.empty() ? ObjectSize{} : sizes.front();
   const double pixel_rad = kPixels / camera_.focal_pixels();
   const bool whole = std::isfinite(slope) && !blob.cut_left && !blob.cut_right && !blob.cut_top;
   const auto [near_m, far_m] = on_zone ? ground_around() : std::pair(0.0, std::numeric_limits<double>::infinity());
   ObjectSize best;
   double best_cost = std::numeric_limits<double>::infinity();
-  for (const ObjectSize& size : sizes_.sizes) {
-    if (!size.known()) continue;
+  for (const ObjectSize& size : sizes) {
     double cost = best.known() ? kOlder : 0.0;
     const double range_m = range_by_width(size);
     if (whole && std::isfinite(range_m)) {

@@ -111,12 +111,10 @@ void split_objects_from_zones(const cv::Mat& rgb, const GroundCamera& camera, co
   const std::size_t count = regions.regions.size();
   for (std::size_t i = 0; i < count && regions.regions.size() < kMaxRegions; ++i) {
     const Region zone = regions.regions[i];
-    const SizesOfColour& known = sizes.of[zone.colour];
+    const std::vector<ObjectSize> known = sizes.of[zone.colour].candidates();
     if (zone.area < 4 * config.min_area_pixels || zone.line || zone.standing()) continue;
-    const auto may_be_low = [&](const ObjectSize& size) {
-      return size.known() && size.height_m <= camera.height_m() + kAboveCamera_m;
-    };
-    if (std::none_of(known.sizes.begin(), known.sizes.end(), may_be_low)) continue;
+    const auto may_be_low = [&](const ObjectSize& size) { return size.height_m <= camera.height_m() + kAboveCamera_m; };
+    if (std::none_of(known.begin(), known.end(), may_be_low)) continue;
     const auto outline = outline_of(rgb, camera, regions, i);
     if (!outline) continue;
     const Columns columns = risen_columns(camera, regions, i, *outline);
@@ -124,10 +122,10 @@ void split_objects_from_zones(const cv::Mat& rgb, const GroundCamera& camera, co
     const double row = zone.v_min + 0.5;
     const double left_rad = azimuth_rad(camera, {static_cast<double>(columns.first), row});
     const double right_rad = azimuth_rad(camera, {columns.last + 1.0, row});
-    const auto size = std::find_if(known.sizes.begin(), known.sizes.end(), [&](const ObjectSize& one) {
+    const auto size = std::find_if(known.begin(), known.end(), [&](const ObjectSize& one) {
       return may_be_low(one) && fits(camera, regions, i, columns, *outline, one, left_rad - right_rad);
     });
-    if (size == known.sizes.end()) continue;
+    if (size == known.end()) continue;
     const double height_m = size->height_m;
     Region& object = split(camera, columns, *outline, i, regions);
     object.stand_low(left_rad, right_rad, height_m);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "constrictor/messages.hpp"
 
@@ -36,38 +37,50 @@ struct ObjectSize {
 /// What one image has shown: of each colour, the size of at most one object.
 using MeasuredSizes = std::array<ObjectSize, msg::kColourCount>;
 
-/// The sizes of the objects of one colour, the one that was measured last first. A further size takes the place of one
-/// that few images have shown, otherwise of the one that was measured longest ago.
+/// The sizes of the objects of one colour: the mean over all images, and the sizes that differ from each other.
 struct SizesOfColour {
-  std::array<ObjectSize, 3> sizes{};
+  ObjectSize mean;
+  /// The size that was measured last comes first. A further one takes the place of the one that fewest images have
+  /// shown.
+  std::array<ObjectSize, 3> different{};
 
   void learn(const ObjectSize& now) {
     if (now.images == 0) return;
-    auto found = std::find_if(sizes.begin(), sizes.end(), [&](const ObjectSize& size) { return size.like(now); });
-    if (found == sizes.end()) {
-      const auto few = std::find_if(sizes.rbegin(), sizes.rend(), [](const ObjectSize& size) { return !size.known(); });
-      found = few == sizes.rend() ? sizes.end() - 1 : few.base() - 1;
-      *found = {0.0, 0.0, 0};
+    average(mean, now);
+    auto found =
+        std::find_if(different.begin(), different.end(), [&](const ObjectSize& size) { return size.like(now); });
+    if (found == different.end()) {
+      const auto fewer = [](const ObjectSize& a, const ObjectSize& b) { return a.images < b.images; };
+      found = std::min_element(different.rbegin(), different.rend(), fewer).base() - 1;
+      *found = {};
     }
-    std::rotate(sizes.begin(), found, found + 1);
-    ObjectSize& size = sizes.front();
-    size.images = std::min(size.images + 1, ObjectSize::kMemoryImages);
-    size.radius_m += (now.radius_m - size.radius_m) / size.images;
-    size.height_m += (now.height_m - size.height_m) / size.images;
+    std::rotate(different.begin(), found, found + 1);
+    average(different.front(), now);
   }
-  [[nodiscard]] std::size_t known_count() const {
-    return static_cast<std::size_t>(
-        std::count_if(sizes.begin(), sizes.end(), [](const ObjectSize& size) { return size.known(); }));
-  }
-  [[nodiscard]] bool known() const { return known_count() > 0; }
-  /// The known size that was measured last; not known if none is.
-  [[nodiscard]] ObjectSize first_known() const {
-    const auto found = std::find_if(sizes.begin(), sizes.end(), [](const ObjectSize& size) { return size.known(); });
-    return found == sizes.end() ? ObjectSize{} : *found;
+  [[nodiscard]] bool known() const { return mean.known(); }
+  /// The sizes that an object may have, the one that was measured last first: the mean, or else the different sizes, if
+  /// there are several. A third as many images must have shown each of them as the one that most have shown: what a few
+  /// images show of an object that the body hides in part is not another object. Empty if none is known.
+  [[nodiscard]] std::vector<ObjectSize> candidates() const {
+    std::int32_t most = 0;
+    for (const ObjectSize& size : different) most = std::max(most, size.images);
+    std::vector<ObjectSize> sizes;
+    for (const ObjectSize& size : different)
+      if (size.known() && 3 * size.images >= most) sizes.push_back(size);
+    if (sizes.size() > 1) return sizes;
+    return known() ? std::vector<ObjectSize>{mean} : std::vector<ObjectSize>{};
   }
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(sizes);
+    archive(mean, different);
+  }
+
+ private:
+  static void average(ObjectSize& size, const ObjectSize& now) {
+    if (size.images == 0) size.radius_m = size.height_m = 0.0;
+    size.images = std::min(size.images + 1, ObjectSize::kMemoryImages);
+    size.radius_m += (now.radius_m - size.radius_m) / size.images;
+    size.height_m += (now.height_m - size.height_m) / size.images;
   }
 };
 
@@ -83,7 +96,7 @@ struct ObjectSizes {
   [[nodiscard]] ObjectSizes with_prior(double radius_m, double height_m) const {
     ObjectSizes sizes = *this;
     for (SizesOfColour& colour : sizes.of) {
-      if (!colour.known()) colour.sizes.front() = {radius_m, height_m, ObjectSize::kEnoughImages};
+      if (!colour.known()) colour.mean = {radius_m, height_m, ObjectSize::kEnoughImages};
     }
     return sizes;
   }
