@@ -53,7 +53,7 @@ void judge_joint(const RobotModel& robot, const JointBound& bound, RobotVerdict&
 
 /// [rad/s] Largest rate of a yaw joint in the wave of `travel` at the highest frequency that control uses.
 double wave_rate_rad_s(const RobotModel& robot, const ControlConfig& config) {
-  const double link_m = link_share(robot) * 0.178;
+  const double link_m = link_share(robot) * kTunedLink_m;
   const double swing_rad = 2.0 * config.travel.amplitude_rad *
                            std::sin(std::numbers::pi * std::min(0.5, link_m / config.travel.wavelength_m));
   return 2.0 * std::numbers::pi * config.most_hz * swing_rad;

@@ -19,11 +19,10 @@ constexpr double kLeastAbove_m = 0.02;  // an object that is hardly higher than 
 bool Gauge::ends_in_zone(double range_m) const {
   constexpr double kFar_m = 1.5;  // nearer, the zone is several pixels high, and is told from the object
   constexpr double kNarrow = 0.88;
-  const auto narrower = [&](const ObjectSize& size) {
-    return range_m < kNarrow * range_by_width(size);
-  };  // not for NaN
+  if (range_m <= kFar_m) return false;
   const std::vector<ObjectSize> sizes = sizes_.candidates();
-  return range_m > kFar_m && !sizes.empty() && std::all_of(sizes.begin(), sizes.end(), narrower);
+  const auto narrower = [&](const ObjectSize& size) { return range_m < kNarrow * range_by_width(size); };
+  return !sizes.empty() && std::all_of(sizes.begin(), sizes.end(), narrower);
 }
 
 double Gauge::range_by_width(const ObjectSize& size) const {

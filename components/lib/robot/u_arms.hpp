@@ -35,14 +35,16 @@ namespace constrictor {
   return robot.module_length_m * static_cast<double>(robot.module_count) / kTuned_m;
 }
 
-/// The distance of neighbouring yaw joints, the links of the body seen from above, relative to that of `mamba`, for
-/// which angles of the base and weights of links were found; at most 1.
+/// [m] Distance of neighbouring yaw joints of `mamba`, for which angles of the base and weights of links were found.
+inline constexpr double kTunedLink_m = 0.178;
+
+/// The distance of neighbouring yaw joints, the links of the body seen from above, relative to that of `mamba`; at most
+/// 1.
 [[nodiscard]] inline double link_share(const RobotModel& robot) {
-  constexpr double kTuned_m = 0.178;
   const std::vector<std::size_t> joints = robot.yaw_joints();
   if (joints.size() < 2) return 1.0;
   const auto modules = static_cast<double>(joints.back() - joints.front());
-  return std::min(1.0, modules * robot.module_length_m / static_cast<double>(joints.size() - 1) / kTuned_m);
+  return std::min(1.0, modules * robot.module_length_m / static_cast<double>(joints.size() - 1) / kTunedLink_m);
 }
 
 }  // namespace constrictor
