@@ -131,7 +131,7 @@ void ChainDynamics::step(std::span<const ServoRow> rows, std::span<const SolverC
     if (contact.second < module_count()) momentum_after -= impulse;  // kFixed is not a module
   }
   integrate();
-  restore_momentum(momentum_after);
+  restore_momentum(momentum_after, contacts);
   std::fill(external_.begin(), external_.end(), External{});
 }
 
@@ -150,10 +150,23 @@ std::pair<Vector6d, Matrix6d> ChainDynamics::momentum() const {
 
 // The generalised velocities, which the step keeps or changes, mean another momentum in the new posture. The equations
 // of motion account for it only to the first order of the step, so that a robot in the air would gain momentum from its
-// own motion. What is missing is given to all modules alike.
-void ChainDynamics::restore_momentum(const Vector6d& wanted) {
-  const auto [found, inertia] = momentum();
-  const Vector6d twist = inertia.llt().solve(wanted - found);
+// own motion. What is missing is given to all modules alike, except where the ground holds the robot: there it is the
+// ground's. (If the robot got it, too, a part that swings would lose its energy.) A contact holds along its normal, and
+// in the directions in which friction is below its bound; it resists there as the law of friction does.
+void ChainDynamics::restore_momentum(const Vector6d& wanted, std::span<const SolverContact> contacts) {
+  auto [found, resistance] = momentum();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts[i].first >= module_count() || contacts[i].second != kFixed) continue;
+    const ChainSystem::Contact& contact = system_.contacts()[i];
+    const ContactSlope slope = contact.law.slope(contact.velocity_m_s);
+    for (std::size_t k = 0; k < slope.count; ++k) {
+      const auto& [axis, yielding] = slope.terms[k];
+      const double holding = axis == Vector3d::UnitX() ? settings_.creep_resistance_n_s_m : yielding;
+      const Vector6d wrench = at_point(contacts[i].touch.position_m, contact.law.frame() * axis);
+      resistance += settings_.step_s * holding * wrench * wrench.transpose();
+    }
+  }
+  const Vector6d twist = resistance.llt().solve(wanted - found);
   bodies_[0].velocity_m_s += velocity_at(twist, bodies_[0].position_m);
   bodies_[0].angular_velocity_rad_s += twist.head<3>();
   move_modules();

@@ -43,7 +43,8 @@ class ChainDynamics : public Dynamics {
   /// The spatial momentum of the chain about the origin of W, and the matrix that turns a velocity which all modules
   /// share into such a momentum.
   [[nodiscard]] std::pair<Vector6d, Matrix6d> momentum() const;
-  void restore_momentum(const Vector6d& wanted);
+  /// Gives the chain the momentum `wanted` (as in momentum()) after a step with these contacts.
+  void restore_momentum(const Vector6d& wanted, std::span<const SolverContact> contacts);
   [[nodiscard]] Eigen::Vector3d axis(std::size_t joint) const;  ///< in W
   [[nodiscard]] const Eigen::Vector3d& reference(std::size_t body) const;
   [[nodiscard]] Eigen::Matrix3d inertia_W(std::size_t body) const;

@@ -12,7 +12,7 @@ inline constexpr const char* kEngineChain = "chain";
 
 struct SolverSettings {
   std::string engine = kEngineChain;
-  double step_s = 0.004;
+  double step_s = 0.005;
   int iterations = 50;           ///< ode
   double over_relaxation = 1.7;  ///< ode: W of QuickStep, no unit
   double erp = 0.2;   ///< of a joint's position error that a step corrects; chain: only beyond a limit of the angle

@@ -99,15 +99,14 @@ Momentum momentum_of(const World& world) {
   return sum;
 }
 
-void check_swinging_in_space(Section& section) {
-  Scenario space = in_the_air(3.0);
-  space.gravity_m_s2.setZero();
+/// Momentum that a robot gives itself by swinging, without gravity or on ground without friction: there is none.
+void check_swinging(Section& section, const std::string& name, const Scenario& scenario) {
   RobotModel robot = chain(24, JointAxis::kYaw);
   for (JointModel& joint : robot.joints) {  // no joint reaches its end stop, which would take energy
     joint.min_rad = -3.0;
     joint.max_rad = 3.0;
   }
-  World world(robot, space);
+  World world(robot, scenario);
   OpenLoopGait gait;
   gait.amplitude_rad = 0.15;  // with a yaw joint at each module
   double largest_m_s = 0.0;
@@ -116,14 +115,16 @@ void check_swinging_in_space(Section& section) {
     largest_m_s = std::max(largest_m_s, world.module_velocity_m_s(23).norm());
   }
   const Momentum driven = momentum_of(world);
+  // The ground holds vertically.
+  const double linear_ns = scenario.gravity_m_s2.isZero() ? driven.linear_ns.norm() : driven.linear_ns.head<2>().norm();
   const double scale_ns = 24 * robot.module_mass_kg * largest_m_s;
-  section.cases.push_back({"swinging without gravity: linear momentum, as a share of mass times the tail's speed", "1",
-                           0.0, driven.linear_ns.norm() / scale_ns, 1e-6, false});
-  section.cases.push_back({"swinging without gravity: angular momentum, as a share of the same times 1 m", "1", 0.0,
+  section.cases.push_back({name + ": linear momentum, as a share of mass times the tail's speed", "1", 0.0,
+                           linear_ns / scale_ns, 1e-6, false});
+  section.cases.push_back({name + ": angular momentum, as a share of the same times 1 m", "1", 0.0,
                            std::abs(driven.angular_nms) / scale_ns, 0.01, false});
   hold(world, 0.0, 0.0, 0.5);
-  section.cases.push_back({"relaxed without gravity: kinetic energy after 0.5 s", "J", driven.kinetic_j,
-                           momentum_of(world).kinetic_j, 0.05});
+  section.cases.push_back(
+      {name + ", then relaxed: kinetic energy after 0.5 s", "J", driven.kinetic_j, momentum_of(world).kinetic_j, 0.05});
 }
 
 void check_collision(Section& section) {
@@ -187,7 +188,12 @@ Section check_free_bodies() {
                   {}};
   check_fall(section);
   check_pendulum(section);
-  check_swinging_in_space(section);
+  Scenario space = in_the_air(3.0);
+  space.gravity_m_s2.setZero();
+  check_swinging(section, "swinging without gravity", space);
+  Scenario ice;
+  ice.friction.ground_scale = 0.0;
+  check_swinging(section, "swinging on ice", ice);
   check_collision(section);
   check_coasting(section);
   return section;
