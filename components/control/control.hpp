@@ -38,7 +38,7 @@ class Control : public TunableComponent<ControlState, ControlConfig>, public Rob
   Control(Wiring& wiring, const Setup& setup, MethodRegistry methods = {});
   [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
-  [[nodiscard]] RobotVerdict judge_robot() const override { return judge_joints(robot_, config_); }
+  [[nodiscard]] CheckVerdict judge_robot() const override { return judge_joints(robot_, config_); }
 
  private:
   /// What control does in this tick.

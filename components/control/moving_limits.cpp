@@ -38,7 +38,7 @@ double of_most_joints(const RobotModel& robot, double JointModel::*member) {
   return *middle;
 }
 
-void judge_joint(const RobotModel& robot, const JointBound& bound, RobotVerdict& verdict) {
+void judge_joint(const RobotModel& robot, const JointBound& bound, CheckVerdict& verdict) {
   const double found = of_most_joints(robot, bound.member);
   const double amount = bound.sign * found;
   if (amount >= bound.enough) return;
@@ -61,8 +61,8 @@ double wave_rate_rad_s(const RobotModel& robot, const ControlConfig& config) {
 
 }  // namespace
 
-RobotVerdict judge_joints(const RobotModel& robot, const ControlConfig& config) {
-  RobotVerdict verdict;
+CheckVerdict judge_joints(const RobotModel& robot, const ControlConfig& config) {
+  CheckVerdict verdict;
   if (robot.yaw_joints().empty() || config.travel.method != 0) return verdict;  // measured for undulation
   const double share = link_share(robot);                                       // shorter links bend less
   const double least_rad = share * kLeastRange_rad, enough_rad = share * kEnoughRange_rad;

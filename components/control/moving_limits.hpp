@@ -11,6 +11,6 @@ namespace constrictor {
 /// What is wrong with the joints of this robot: range, rate or torque of most of its yaw joints. The bounds are
 /// measured (README.md): with less than the one the robot covers less than a twentieth of its usual way, and with less
 /// than the other less than a quarter.
-[[nodiscard]] RobotVerdict judge_joints(const RobotModel& robot, const ControlConfig& config);
+[[nodiscard]] CheckVerdict judge_joints(const RobotModel& robot, const ControlConfig& config);
 
 }  // namespace constrictor

@@ -69,7 +69,7 @@ class Navigation : public TunableComponent<NavigationState, NavigationConfig>, p
   Navigation(Wiring& wiring, const Setup& setup);
   [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
-  [[nodiscard]] ObjectVerdict judge(const DemandedObject& object) const override {
+  [[nodiscard]] CheckVerdict judge(const DemandedObject& object) const override {
     return judge_object(grip_sense_, robot_, object);
   }
 

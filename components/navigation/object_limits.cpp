@@ -11,7 +11,7 @@ namespace {
 constexpr double kLargestBox = 1.2;  // half of the diagonal, by the radius of the U
 
 /// A box turns to the U as it likes, and the robot sees it from all sides.
-void judge_box(const GripSense& sense, const RobotModel& robot, const DemandedObject& object, ObjectVerdict& verdict) {
+void judge_box(const GripSense& sense, const RobotModel& robot, const DemandedObject& object, CheckVerdict& verdict) {
   const double half_m = object.radius_m();
   const double largest_m = kLargestBox * sense.largest_radius_m();
   if (half_m > largest_m) {
@@ -37,7 +37,7 @@ void judge_box(const GripSense& sense, const RobotModel& robot, const DemandedOb
 constexpr double kNarrowest = 0.5;
 constexpr double kNarrow = 0.85;
 
-void judge_width(const RobotModel& robot, const DemandedObject& object, ObjectVerdict& verdict) {
+void judge_width(const RobotModel& robot, const DemandedObject& object, CheckVerdict& verdict) {
   const double half_m = 0.5 * object.width_m;
   const double least_m = kNarrowest * robot.module_radius_m, reliable_m = kNarrow * robot.module_radius_m;
   if (half_m >= reliable_m) return;
@@ -49,7 +49,7 @@ void judge_width(const RobotModel& robot, const DemandedObject& object, ObjectVe
 }
 
 // The body lies on the ground, and touches at the height of its axis what is not lower.
-void judge_height(const RobotModel& robot, const DemandedObject& object, ObjectVerdict& verdict) {
+void judge_height(const RobotModel& robot, const DemandedObject& object, CheckVerdict& verdict) {
   if (object.height_m >= robot.module_radius_m) return;
   verdict.refusals.push_back(fmt::format(
       "{}: found a height of {:.3f} m, accepted at least {:.3f} m (module.radius_m): the body of {} slides over it",
@@ -61,7 +61,7 @@ void judge_height(const RobotModel& robot, const DemandedObject& object, ObjectV
 constexpr double kSlender = 4.5;
 constexpr double kSteady = 3.1;
 
-void judge_slenderness(const DemandedObject& object, ObjectVerdict& verdict) {
+void judge_slenderness(const DemandedObject& object, CheckVerdict& verdict) {
   const double steady_m = kSteady * object.width_m;
   const auto found = [&](const char* accepted, double most_m, const char* why) {
     return fmt::format("{}: found a height of {:.3f} m, {} {:.3f} m for a width of {:.3f} m: {}", object.height_key(),
@@ -77,8 +77,8 @@ void judge_slenderness(const DemandedObject& object, ObjectVerdict& verdict) {
 
 }  // namespace
 
-ObjectVerdict judge_object(const GripSense& sense, const RobotModel& robot, const DemandedObject& object) {
-  ObjectVerdict verdict;
+CheckVerdict judge_object(const GripSense& sense, const RobotModel& robot, const DemandedObject& object) {
+  CheckVerdict verdict;
   if (!sense.refusal().empty()) return verdict;  // the mission is refused for the robot
   if (object.box) {
     judge_box(sense, robot, object, verdict);

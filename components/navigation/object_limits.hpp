@@ -9,6 +9,6 @@ namespace constrictor {
 /// Whether the U of this robot can take and hold an object that stands upright: a cylinder that fits into the U; a box
 /// whose diagonal is not much larger, because the robot sees it from all sides; one that does not tip over when the
 /// body meets it.
-[[nodiscard]] ObjectVerdict judge_object(const GripSense& sense, const RobotModel& robot, const DemandedObject& object);
+[[nodiscard]] CheckVerdict judge_object(const GripSense& sense, const RobotModel& robot, const DemandedObject& object);
 
 }  // namespace constrictor

@@ -65,7 +65,7 @@ DeliveryView view_delivery(const msg::FieldMap& map, const DroppedObject& droppe
   return best;
 }
 
-ObjectVerdict judge_zone_size(const DemandedObject& object) {
+CheckVerdict judge_zone_size(const DemandedObject& object) {
   constexpr double kLeast_m = 0.06;  // kRim_m, and a standard deviation of the places of object and zone
   const double least_m = std::max(kLeast_m, object.radius_m());
   if (object.zone_key.empty() || object.zone_radius_m >= least_m) return {};

@@ -64,7 +64,7 @@ struct DroppedObject {
 
 /// Whether the zone of this object is large enough to see that the object was delivered: at least as large as the
 /// object, which would hide it, and larger than what the map may be wrong by.
-[[nodiscard]] ObjectVerdict judge_zone_size(const DemandedObject& object);
+[[nodiscard]] CheckVerdict judge_zone_size(const DemandedObject& object);
 
 /// The highest handle in the map; 0 if it is empty.
 [[nodiscard]] std::uint16_t newest_handle(const msg::FieldMap& map);

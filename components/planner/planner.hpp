@@ -16,7 +16,7 @@ class Planner : public ConfiguredComponent<MissionMemory, PlannerConfig>, public
   Planner(Wiring& wiring, const Setup& setup);
   [[nodiscard]] bool has_short_steps() const override { return true; }
   void step(const Tick& tick) override;
-  [[nodiscard]] ObjectVerdict judge(const DemandedObject& object) const override { return judge_zone_size(object); }
+  [[nodiscard]] CheckVerdict judge(const DemandedObject& object) const override { return judge_zone_size(object); }
 
  private:
   Log log_;

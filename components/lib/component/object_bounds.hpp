@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "component/check_verdict.hpp"
+
 namespace constrictor {
 
 /// An object that the mission demands, as the scene has it.
@@ -27,12 +29,6 @@ struct DemandedObject {
   [[nodiscard]] std::string height_key() const { return key + (box ? ".size_m" : ".height_m"); }
 };
 
-/// What a component finds wrong with an object, for people: key, found, accepted and reason.
-struct ObjectVerdict {
-  std::vector<std::string> refusals;  ///< why its retrieval cannot succeed
-  std::vector<std::string> warnings;  ///< why it often fails
-};
-
 /// A component that knows the true scene.
 class ObjectSource {
  public:
@@ -46,7 +42,7 @@ class ObjectSource {
 class ObjectJudge {
  public:
   virtual ~ObjectJudge() = default;
-  [[nodiscard]] virtual ObjectVerdict judge(const DemandedObject& object) const = 0;
+  [[nodiscard]] virtual CheckVerdict judge(const DemandedObject& object) const = 0;
 };
 
 }  // namespace constrictor

@@ -74,6 +74,13 @@ struct Built {
   std::unique_ptr<Component> component;  // after its wiring, so that it is destroyed first
 };
 
+/// Adds the lines that `line` makes from the texts of a verdict.
+template <class Line>
+void add(const CheckVerdict& verdict, const Line& line, Findings& findings) {
+  for (const auto& what : verdict.refusals) findings.errors.push_back(line(what));
+  for (const auto& what : verdict.warnings) findings.warnings.push_back(line(what));
+}
+
 /// Whether the components that were built can deal with the objects of the mission.
 class ObjectCheck {
  public:
@@ -92,9 +99,7 @@ class ObjectCheck {
     };
     for (const DemandedObject& object : objects_) {
       for (const Built& judge : judges_) {
-        const ObjectVerdict verdict = dynamic_cast<const ObjectJudge&>(*judge.component).judge(object);
-        for (const auto& what : verdict.refusals) findings.errors.push_back(line(what));
-        for (const auto& what : verdict.warnings) findings.warnings.push_back(line(what));
+        add(dynamic_cast<const ObjectJudge&>(*judge.component).judge(object), line, findings);
       }
     }
   }
@@ -157,10 +162,8 @@ Findings check_components(const HostOptions& options, const std::vector<Componen
         hello.timing.latency = std::max(hello.timing.latency, latency->second);
       hellos.push_back(std::move(hello));
       if (const auto* judge = dynamic_cast<const RobotJudge*>(built.component.get())) {
-        const RobotVerdict verdict = judge->judge_robot();
         const auto line = [&](const std::string& what) { return setup.robot_file.string() + ": " + what; };
-        for (const auto& what : verdict.refusals) findings.errors.push_back(factory.name + ": " + line(what));
-        for (const auto& what : verdict.warnings) findings.warnings.push_back(line(what));
+        add(judge->judge_robot(), line, findings);
       }
       objects.ask(std::move(built), setup.mission);
     } catch (const std::exception& error) {

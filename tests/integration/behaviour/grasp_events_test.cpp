@@ -183,20 +183,24 @@ TEST_F(GraspEvents, ReportsGraspLostByTorqueAndTouchWhenACarriedObjectIsTakenAwa
       << object().distance_m({1.2, 0.15, 0.0});
   const double thrown_s = time_s();
   ASSERT_FALSE(first(msg::kEventObjectGraspLost));
+  const double side = std::copysign(1.0, held_nm);
   double torque_nm = held_nm;
+  double least_nm = side * held_nm;
   ASSERT_TRUE(until(
       [&] {
         torque_nm += 0.02 * (base_torque_nm() - torque_nm);  // a low-pass with a time constant of one second
+        least_nm = std::min(least_nm, side * torque_nm);
         return first(msg::kEventObjectGraspLost) != nullptr;
       },
       15.0));
   const Happened& lost = *first(msg::kEventObjectGraspLost);
-  std::printf("base torque %.2f Nm; thrown at %.2f s, last touched at %.2f s, lost at %.2f s, base torque %.2f Nm\n",
-              held_nm, thrown_s, object_touched_s, lost.time_s, torque_nm);
+  std::printf(
+      "base torque %.2f Nm; thrown at %.2f s, last touched at %.2f s, lost at %.2f s, least base torque %.2f Nm\n",
+      held_nm, thrown_s, object_touched_s, lost.time_s, least_nm);
   EXPECT_GT(lost.time_s, thrown_s);
   EXPECT_GT(lost.time_s, object_touched_s + 2.0) << "navigation's `lost_after_s`";
-  // The wave of the gait loads the empty base, too, but less than the object did.
-  EXPECT_LT(std::copysign(1.0, held_nm) * torque_nm, 0.8 * std::abs(held_nm));
+  // The wave of the gait loads the empty base, too, in some of its phases as much as the object did.
+  EXPECT_LT(least_nm, 0.5 * std::abs(held_nm));
   EXPECT_GT(lost.head.distance_m(lost.object), 0.5);
   EXPECT_EQ(until_end(1.0), msg::kGoalAborted);
 }

@@ -21,7 +21,7 @@ RobotModel with(double JointModel::*member, double value) {
 }
 
 std::string kind_of(const RobotModel& robot, const ControlConfig& config = {}) {
-  const RobotVerdict verdict = judge_joints(robot, config);
+  const CheckVerdict verdict = judge_joints(robot, config);
   return !verdict.refusals.empty() ? "refused" : !verdict.warnings.empty() ? "warned" : "accepted";
 }
 

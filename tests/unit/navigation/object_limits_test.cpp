@@ -18,12 +18,12 @@ class ObjectLimits : public ::testing::Test {
   static DemandedObject box(double width_m, double length_m, double height_m = 0.15) {
     return {"objects[0]", true, width_m, length_m, height_m, "zones[0]", 0.4};
   }
-  [[nodiscard]] ObjectVerdict judge(const DemandedObject& object) const {
+  [[nodiscard]] CheckVerdict judge(const DemandedObject& object) const {
     return judge_object(GripSense(robot_, config_.grip), robot_, object);
   }
   /// Whether an object is accepted without a warning, with one, or refused.
   [[nodiscard]] std::string verdict(const DemandedObject& object) const {
-    const ObjectVerdict found = judge(object);
+    const CheckVerdict found = judge(object);
     return !found.refusals.empty() ? "refused" : !found.warnings.empty() ? "warned" : "accepted";
   }
 
