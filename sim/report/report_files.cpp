@@ -87,6 +87,8 @@ std::string Report::mission_json(const Tick& tick, const std::string& figure_err
   json["all_in_zones"] = truth() && !demanded_.empty()
                              ? ordered_json(state_.ledger.all_in_zones(demanded_, *scene_, *world_))
                              : ordered_json();
+  json["demanded"] = ordered_json::array();
+  for (const std::uint8_t colour : demanded_) json["demanded"].push_back(name_of(constants::kColour, colour));
   json["recoveries"] = state_.recoveries;
   json["objects"] = objects_json();
   const double visible = state_.percepts_following > 0 ? static_cast<double>(state_.percepts_visible) /

@@ -73,6 +73,7 @@ json example_report() {
           {"objects",
            {{{"colour", "green"}, {"grasped", true}, {"dropped", true}, {"in_zone", false}, {"zone_distance_m", 0.51}},
             {{"colour", "red"}, {"grasped", true}, {"dropped", false}, {"in_zone", false}, {"zone_distance_m", 4.0}}}},
+          {"demanded", {"green", "red"}},
           {"states",
            {{{"sim_time_s", 0.0}, {"state", "search object"}},
             {{"sim_time_s", 30.0}, {"state", "grasp"}},
@@ -98,6 +99,19 @@ TEST(MissionResult, IsReadFromTheReport) {
   EXPECT_TRUE(reached(result, 0));
   EXPECT_FALSE(reached(result, 1));
   EXPECT_FALSE(reached(result, 3));
+}
+
+TEST(MissionResult, APhaseIsReachedByTheObjectsThatTheMissionDemands) {
+  MissionResult result;
+  result.objects = {{"green", true, true, true, 0.1}, {"green", true, false, false, 3.0}, {"red", false, false, false}};
+  const auto phases = [&](std::vector<std::string> demanded) {
+    result.demanded = std::move(demanded);
+    return std::vector<bool>{reached(result, 0), reached(result, 1), reached(result, 2)};
+  };
+  EXPECT_EQ(phases({"green"}), std::vector<bool>({true, true, true}));
+  EXPECT_EQ(phases({"green", "green"}), std::vector<bool>({true, false, false}));
+  EXPECT_EQ(phases({"green", "red"}), std::vector<bool>({false, false, false}));
+  EXPECT_EQ(phases({}), std::vector<bool>({false, false, false})) << "there is nothing to grasp";
 }
 
 TEST(MissionResult, AMissionThatDidNotEndLastsAsLongAsItsRun) {

@@ -142,6 +142,7 @@ TEST(Report, KnowsAMissionThatThePlannerDidNotSeeSucceed) {
   Story story;
   story.mission_end = msg::kMissionFailed;
   EXPECT_EQ(all_in_zones(story, both), true);
+  EXPECT_EQ(report_of(story, {}, {}, {}, both).mission["demanded"], json({"green", "red"}));
   EXPECT_EQ(all_in_zones(story, "{sequence: [green, green], line_colour: blue}"), false) << "there is one green object";
   EXPECT_EQ(all_in_zones(story, "{sequence: [], line_colour: blue}"), json());
   story.red_drop_distance_m = 0.31;

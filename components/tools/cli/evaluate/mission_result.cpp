@@ -29,8 +29,13 @@ bool lacks_verdict(const nlohmann::json& report) {
 }  // namespace
 
 bool reached(const MissionResult& result, std::size_t phase) {
+  const auto& demanded = result.demanded;
   const auto all = [&](auto&& holds) {
-    return !result.objects.empty() && std::all_of(result.objects.begin(), result.objects.end(), holds);
+    return !demanded.empty() && std::all_of(demanded.begin(), demanded.end(), [&](const std::string& colour) {
+      const auto counts = [&](const ObjectResult& object) { return object.colour == colour && holds(object); };
+      return std::count_if(result.objects.begin(), result.objects.end(), counts) >=
+             std::count(demanded.begin(), demanded.end(), colour);
+    });
   };
   switch (phase) {
     case 0:
@@ -80,6 +85,9 @@ MissionResult read_result(const std::filesystem::path& folder, int status, const
     result.objects.push_back({text_field(object, "colour"), flag_field(object, "grasped"),
                               flag_field(object, "dropped"), flag_field(object, "in_zone"),
                               number_field(object, "zone_distance_m")});
+  }
+  for (const auto& colour : field(report, "demanded")) {
+    if (colour.is_string()) result.demanded.push_back(colour);
   }
   for (const StateStay& stay : stays_of(report, result.mission_time_s)) {
     if (stay.end_s > stay.begin_s) result.time_in_state_s[stay.state] += stay.end_s - stay.begin_s;

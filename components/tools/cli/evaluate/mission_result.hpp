@@ -39,6 +39,7 @@ struct MissionResult {
   int recoveries = 0;
   std::string state_hash;
   std::vector<ObjectResult> objects;
+  std::vector<std::string> demanded;               ///< colours of the objects that the mission demands
   std::map<std::string, double> time_in_state_s;   ///< by state of the planner
   std::map<std::string, int> recoveries_by_cause;  ///< their sum is `recoveries`
   RecoveryTime longest_recovery;
@@ -54,7 +55,8 @@ struct MissionResult {
   [[nodiscard]] bool unwritten() const { return incomplete && exit_status <= 1; }
 };
 
-/// The phases of a mission that are counted, in their order. A phase counts as reached if all objects have reached it.
+/// The phases of a mission that are counted, in their order. A phase counts as reached if all objects that the
+/// mission demands have reached it: of each colour at least as many as it demands.
 inline constexpr const char* kPhases[] = {"objects grasped", "objects dropped", "objects in their zones",
                                           "mission succeeded"};
 [[nodiscard]] bool reached(const MissionResult& result, std::size_t phase);
