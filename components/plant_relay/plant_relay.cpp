@@ -6,10 +6,10 @@
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
 #include <cmath>
-#include <sstream>
 
 #include "component/default_robot.hpp"
 #include "configuration/configuration.hpp"
+#include "constrictor/archive.hpp"
 #include "constrictor/text.hpp"
 #include "robot/gate_messages.hpp"
 
@@ -213,17 +213,10 @@ void PlantRelay::send(const std::vector<JointSetpoint>& setpoints, const Tick& t
   if (link_) link_->send(command);
 }
 
-std::string PlantRelay::save() const {
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive(stream);
-  archive(gate_, state_);
-  return std::move(stream).str();
-}
+std::string PlantRelay::save() const { return save_bytes(gate_, state_); }
 
 void PlantRelay::load(const std::string& bytes) {
-  std::istringstream stream(bytes);
-  cereal::PortableBinaryInputArchive archive(stream);
-  archive(gate_, state_);
+  load_bytes(bytes, gate_, state_);
   // The joints may have moved meanwhile, and the commands of this process are those of a new session.
   continued_ = true;
   state_.following = false;

@@ -4,12 +4,12 @@
 
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
-#include <sstream>
 #include <utility>
 
 #include "component/data_path.hpp"
 #include "component/default_robot.hpp"
 #include "configuration/configuration.hpp"
+#include "constrictor/archive.hpp"
 #include "serial/serial_port.hpp"
 
 namespace constrictor {
@@ -166,18 +166,11 @@ void ServoBus::step(const Tick& tick) {
   if (tick.index % kRecordEvery_ticks == 0) record_.write(tick.index, servos_, ports_);
 }
 
-std::string ServoBus::save() const {
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive(stream);
-  archive(gate_, angles_rad_, torques_nm_, boards_.start_yaw_rad());
-  return std::move(stream).str();
-}
+std::string ServoBus::save() const { return save_bytes(gate_, angles_rad_, torques_nm_, boards_.start_yaw_rad()); }
 
 void ServoBus::load(const std::string& bytes) {
-  std::istringstream stream(bytes);
-  cereal::PortableBinaryInputArchive archive(stream);
   double start_yaw_rad = 0.0;
-  archive(gate_, angles_rad_, torques_nm_, start_yaw_rad);
+  load_bytes(bytes, gate_, angles_rad_, torques_nm_, start_yaw_rad);
   boards_.set_start_yaw(start_yaw_rad);
   continued_ = true;
 }

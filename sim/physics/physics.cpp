@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cereal/types/string.hpp>
 #include <span>
-#include <sstream>
 #include <string>
 
 #include "component/data_path.hpp"
+#include "constrictor/archive.hpp"
 #include "sim/physics/scene_description.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 
@@ -94,18 +94,11 @@ std::vector<DemandedObject> Physics::demanded_objects(const std::vector<std::uin
   return demanded;
 }
 
-std::string Physics::save() const {
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive(stream);
-  archive(world_.save(), sensors_, perturbations_, gate_, scene_written_);
-  return std::move(stream).str();
-}
+std::string Physics::save() const { return save_bytes(world_.save(), sensors_, perturbations_, gate_, scene_written_); }
 
 void Physics::load(const std::string& bytes) {
-  std::istringstream stream(bytes);
-  cereal::PortableBinaryInputArchive archive(stream);
   std::string world;
-  archive(world, sensors_, perturbations_, gate_, scene_written_);
+  load_bytes(bytes, world, sensors_, perturbations_, gate_, scene_written_);
   world_.load(world);
 }
 

@@ -1,11 +1,10 @@
 // The part of World that saves its whole memory and continues from it, bit for bit.
 #include <fmt/format.h>
-#include <cereal/archives/portable_binary.hpp>
 #include <cereal/types/vector.hpp>
 
-#include <sstream>
 #include <stdexcept>
 
+#include "constrictor/archive.hpp"
 #include "sim/world/world.hpp"
 
 namespace constrictor {
@@ -19,16 +18,14 @@ void World::serialize_rest(Archive& archive) {
 }
 
 std::string World::save() const {
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive(stream);
+  BytesWriter archive;
   archive(static_cast<std::uint32_t>(module_count()), static_cast<std::uint32_t>(object_count()), dynamics_->save());
   const_cast<World*>(this)->serialize_rest(archive);  // an output archive changes nothing
-  return std::move(stream).str();
+  return archive.take();
 }
 
 void World::load(const std::string& bytes) {
-  std::istringstream stream(bytes);
-  cereal::PortableBinaryInputArchive archive(stream);
+  BytesReader archive(bytes);
   std::uint32_t modules = 0;
   std::uint32_t objects = 0;
   archive(modules, objects);

@@ -1,6 +1,5 @@
 // The part of Conductor that saves its whole state, and continues from a saved state.
 #include <fmt/format.h>
-#include <cereal/archives/portable_binary.hpp>
 #include <cereal/types/array.hpp>
 #include <cereal/types/deque.hpp>
 #include <cereal/types/map.hpp>
@@ -9,18 +8,17 @@
 #include <cereal/types/vector.hpp>
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include "barrier/conductor.hpp"
+#include "constrictor/archive.hpp"
 
 namespace constrictor {
 namespace {
 
-/// Writes blobs into a list, and their places in it into the stream of numbers and texts.
+/// Writes blobs into a list, and their places in it between the numbers and texts.
 struct Writer {
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive{stream};
+  BytesWriter archive;
   std::vector<Blob> blobs;
 
   template <class... T>
@@ -33,11 +31,10 @@ struct Writer {
   }
 };
 
-/// The inverse. Throws cereal::Exception if the stream ends too early, or std::runtime_error if a blob is missing.
+/// The inverse. Throws cereal::Exception if the numbers end too early, or std::runtime_error if a blob is missing.
 struct Reader {
-  explicit Reader(const Checkpoint& checkpoint) : stream(checkpoint.head), blobs(checkpoint.blobs) {}
-  std::istringstream stream;
-  cereal::PortableBinaryInputArchive archive{stream};
+  explicit Reader(const Checkpoint& checkpoint) : archive(checkpoint.head), blobs(checkpoint.blobs) {}
+  BytesReader archive;
   const std::vector<Blob>& blobs;
 
   template <class... T>
@@ -120,7 +117,7 @@ Checkpoint Conductor::save() const {
   writer.values(options_.release, options_.run_id, options_.roster, options_.plant, options_.idl_hash,
                 options_.config_hash, options_.numeric_profile, options_.period_ns, options_.realtime);
   Archived::rest(writer, const_cast<Conductor&>(*this));  // writing changes nothing
-  return {std::move(writer.stream).str(), std::move(writer.blobs)};
+  return {writer.archive.take(), std::move(writer.blobs)};
 }
 
 Conductor::Conductor(ConductorOptions options, ConductorSink& sink, const Checkpoint& checkpoint)

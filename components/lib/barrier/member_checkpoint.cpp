@@ -3,11 +3,11 @@
 #include <cereal/types/array.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
-#include <sstream>
 #include <stdexcept>
 
 #include "barrier/member.hpp"
 #include "barrier/topic_ops.hpp"
+#include "constrictor/archive.hpp"
 
 namespace constrictor {
 
@@ -47,21 +47,17 @@ void Member::count_on(const std::vector<std::pair<const TopicInfo*, Sample>>& ou
 }
 
 std::string Member::state_bytes() const {
-  std::ostringstream stream;
-  {
-    cereal::PortableBinaryOutputArchive archive(stream);
-    for (const auto& input : inputs_) archive(*input);
-    for (const auto& port : outputs_) archive(port->count);
-    archive(output_hash_, end_requested_, component_->save());
-  }
-  return std::move(stream).str();
+  BytesWriter archive;
+  for (const auto& input : inputs_) archive(*input);
+  for (const auto& port : outputs_) archive(port->count);
+  archive(output_hash_, end_requested_, component_->save());
+  return archive.take();
 }
 
 void Member::restore(const std::string& state) {
   std::string component_state;
   try {
-    std::istringstream stream(state);
-    cereal::PortableBinaryInputArchive archive(stream);
+    BytesReader archive(state);
     for (auto& input : inputs_) archive(*input);
     for (auto& port : outputs_) archive(port->count);
     archive(output_hash_, end_requested_, component_state);

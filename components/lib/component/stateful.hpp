@@ -1,30 +1,20 @@
 // Save and load of an object whose whole memory is one struct.
 #pragma once
 
-#include <cereal/archives/portable_binary.hpp>
-#include <sstream>
 #include <string>
-#include <utility>
+
+#include "constrictor/archive.hpp"
 
 namespace constrictor {
 
 /// Implements the virtual functions `std::string save() const` and `void load(const std::string& bytes)` of `Interface`
-/// for an object whose whole state is one cereal-serialisable struct. The bytes do not depend on the machine. load()
+/// for an object whose whole state is one cereal-serialisable struct. load()
 /// throws cereal::Exception if the bytes end too early.
 template <class Interface, class State>
 class Stateful : public Interface {
  public:
-  [[nodiscard]] std::string save() const final {
-    std::ostringstream stream;
-    cereal::PortableBinaryOutputArchive archive(stream);
-    archive(state_);
-    return std::move(stream).str();
-  }
-  void load(const std::string& bytes) final {
-    std::istringstream stream(bytes);
-    cereal::PortableBinaryInputArchive archive(stream);
-    archive(state_);
-  }
+  [[nodiscard]] std::string save() const final { return save_bytes(state_); }
+  void load(const std::string& bytes) final { load_bytes(bytes, state_); }
 
  protected:
   State state_{};

@@ -1,15 +1,14 @@
 #include "faults/faulty_component.hpp"
 
 #include <algorithm>
-#include <cereal/archives/portable_binary.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/vector.hpp>
 #include <deque>
-#include <sstream>
 #include <stdexcept>
 
 #include "component/concluding.hpp"
 #include "component/device_owner.hpp"
+#include "constrictor/archive.hpp"
 #include "faults/faulty_input.hpp"
 
 namespace constrictor {
@@ -81,18 +80,11 @@ class Faulty : public Base, public Concluding, public DeviceOwner {
     }
     inner_->step(tick);
   }
-  [[nodiscard]] std::string save() const override {
-    std::ostringstream stream;
-    cereal::PortableBinaryOutputArchive archive(stream);
-    archive(inner_->save(), wiring_->save());
-    return std::move(stream).str();
-  }
+  [[nodiscard]] std::string save() const override { return save_bytes(inner_->save(), wiring_->save()); }
   void load(const std::string& bytes) override {
     std::string inner;
     std::vector<std::string> inputs;
-    std::istringstream stream(bytes);
-    cereal::PortableBinaryInputArchive archive(stream);
-    archive(inner, inputs);
+    load_bytes(bytes, inner, inputs);
     wiring_->load(inputs);
     inner_->load(inner);
   }

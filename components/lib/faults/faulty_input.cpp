@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cereal/archives/portable_binary.hpp>
 #include <cereal/types/string.hpp>
 #include <cereal/types/utility.hpp>
 #include <cereal/types/vector.hpp>
-#include <sstream>
 #include <stdexcept>
 
 #include "barrier/topic_ops.hpp"
+#include "constrictor/archive.hpp"
 #include "faults/message_fields.hpp"
 
 namespace constrictor {
@@ -133,19 +132,14 @@ std::string FaultyInput::save() const {
   const std::size_t topic = slot_.topic->id;
   for (const auto& [due, sample] : late_) late.emplace_back(due, bytes_of(sample, topic));
   for (const auto& content : contents_) contents.push_back(bytes_of(content, topic));
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive(stream);
-  archive(late, contents, bytes_of(slot_.latest, topic));
-  return std::move(stream).str();
+  return save_bytes(late, contents, bytes_of(slot_.latest, topic));
 }
 
 void FaultyInput::load(const std::string& bytes) {
   std::vector<std::pair<std::int64_t, std::string>> late;
   std::vector<std::string> contents;
   std::string latest;
-  std::istringstream stream(bytes);
-  cereal::PortableBinaryInputArchive archive(stream);
-  archive(late, contents, latest);
+  load_bytes(bytes, late, contents, latest);
   const std::size_t topic = slot_.topic->id;
   if (contents.size() != contents_.size()) throw std::runtime_error("checkpoint of a faulty input: of another plan");
   late_.clear();

@@ -1,14 +1,13 @@
 // The part of ConductorSide that stores checkpoints, and continues from one.
 #include <fmt/format.h>
-#include <cereal/archives/portable_binary.hpp>
 #include <cereal/types/set.hpp>
 #include <cereal/types/string.hpp>
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include "configuration/configuration.hpp"
+#include "constrictor/archive.hpp"
 #include "runtime/conductor_side.hpp"
 #include "runtime/member_side.hpp"
 
@@ -38,18 +37,11 @@ void ConductorSide::open_store() {
 void ConductorSide::save() {
   if (!store_) return;
   flush_hash_log();
-  if (!control_answers_bytes_) {
-    std::ostringstream bytes;
-    cereal::PortableBinaryOutputArchive archive(bytes);
-    archive(control_answers_);
-    control_answers_bytes_ = std::make_shared<const std::string>(std::move(bytes).str());
-  }
+  if (!control_answers_bytes_)
+    control_answers_bytes_ = std::make_shared<const std::string>(save_bytes(control_answers_));
   Checkpoint checkpoint = conductor_->save();
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive(stream);
   const RecordingPosition recording = recorder_ ? recorder_->position() : RecordingPosition{};
-  archive(checkpoint.head, hash_log_ ? hash_log_->length() : 0, recording, pacer_, ended_);
-  checkpoint.head = std::move(stream).str();
+  checkpoint.head = save_bytes(checkpoint.head, hash_log_ ? hash_log_->length() : 0, recording, pacer_, ended_);
   checkpoint.blobs.push_back(control_answers_bytes_);
   store_->write(checkpoint);
 }
@@ -60,13 +52,9 @@ void ConductorSide::make_successor(ConductorOptions options, const Checkpoint& f
   RecordingPosition recording;
   options.run_id = context_.options.run_id;  // 0: that of the checkpoint
   try {
-    std::istringstream stream(found.head);
-    cereal::PortableBinaryInputArchive archive(stream);
-    archive(of_conductor.head, log_length, recording, pacer_, ended_);
+    load_bytes(found.head, of_conductor.head, log_length, recording, pacer_, ended_);
     if (found.blobs.empty()) throw std::runtime_error("the checkpoint is incomplete");
-    std::istringstream answers(*found.blobs.back());
-    cereal::PortableBinaryInputArchive archive_of_answers(answers);
-    archive_of_answers(control_answers_);
+    load_bytes(*found.blobs.back(), control_answers_);
   } catch (const cereal::Exception& error) {
     throw std::runtime_error(fmt::format("the checkpoint is of another release: {}", error.what()));
   }

@@ -3,25 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cereal/archives/portable_binary.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
 
+#include "constrictor/archive.hpp"
 #include "planner/mission_planner.hpp"
 #include "robot/planar.hpp"
 
 namespace constrictor {
 
 constexpr std::uint64_t kPlannerGoalBase = static_cast<std::uint64_t>(msg::kAuthorityPlanner) << 48;
-
-inline std::string saved(const MissionMemory& memory) {
-  std::ostringstream stream;
-  cereal::PortableBinaryOutputArchive archive(stream);
-  archive(memory);
-  return std::move(stream).str();
-}
 
 /// A world of scripted percepts and events around a planner. A second planner makes every step, too, restored from the
 /// saved state of the previous step: both must make the same requests and reach the same state.
@@ -62,13 +54,11 @@ class PlannerTest : public ::testing::Test {
     for (const auto& event : events) inputs.events.push_back(&event);
 
     MissionMemory copy;
-    std::istringstream stream(saved(memory_));
-    cereal::PortableBinaryInputArchive archive(stream);
-    archive(copy);
+    load_bytes(save_bytes(memory_), copy);
     const auto again = MissionPlanner(config_, copy).step(inputs);
     const auto wanted = MissionPlanner(config_, memory_).step(inputs);
     EXPECT_EQ(again.has_value(), wanted.has_value());
-    EXPECT_EQ(saved(copy), saved(memory_));
+    EXPECT_EQ(save_bytes(copy), save_bytes(memory_));
     if (wanted) last_ = *wanted;
     return wanted;
   }

@@ -1,10 +1,9 @@
 // Which source the safety gate obeys, the posture at which the joints start after a takeover, and its saved state.
-#include <cereal/archives/portable_binary.hpp>
 #include <cmath>
 #include <span>
-#include <sstream>
 #include <string>
 
+#include "constrictor/archive.hpp"
 #include "safety_gate_fixture.hpp"
 
 namespace constrictor {
@@ -141,14 +140,8 @@ TEST_F(SafetyGateTest, ContinuesIdenticallyFromItsSavedState) {
   drive_to(0.5, 0.2);
   offer({0.9, kNan});
   tick();
-  std::stringstream stream;
-  {
-    cereal::PortableBinaryOutputArchive archive(stream);
-    archive(state_);
-  }
   GateState restored;
-  cereal::PortableBinaryInputArchive restore(stream);
-  restore(restored);
+  load_bytes(save_bytes(state_), restored);
   offer({0.9, 0.9});
   SafetyGate other(two_joints(), {3, 10});
   const std::vector<double> position{0.9, 0.9};

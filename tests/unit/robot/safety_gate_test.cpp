@@ -1,9 +1,7 @@
 // Messages, limits, silence and stops at the safety gate. Authority is tested in safety_gate_authority_test.cpp.
-#include <cereal/archives/portable_binary.hpp>
 #include <cmath>
 #include <functional>
 #include <random>
-#include <sstream>
 
 #include "safety_gate_fixture.hpp"
 

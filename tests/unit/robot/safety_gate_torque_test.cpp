@@ -1,8 +1,7 @@
 // The safety gate in torque mode.
-#include <cereal/archives/portable_binary.hpp>
 #include <random>
-#include <sstream>
 
+#include "constrictor/archive.hpp"
 #include "unit/robot/safety_gate_fixture.hpp"
 
 namespace constrictor {
@@ -162,10 +161,8 @@ TEST_F(SafetyGateTorque, ACheckpointInTheMiddleContinuesEqually) {
   push({1.0, -1.0});
   tick();
   push({1.5, -1.5});
-  std::stringstream bytes;
-  cereal::PortableBinaryOutputArchive{bytes}(state_);
   GateState restored;
-  cereal::PortableBinaryInputArchive{bytes}(restored);
+  load_bytes(save_bytes(state_), restored);
   const auto& again = gate_.setpoints({measured_, rates_}, GateOrder::kObey, kDt_s, restored);
   const auto& first = tick();
   for (const std::size_t i : {0u, 1u}) {
