@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--note-every", options.note_every_s, "[s] time between two lines of world.jsonl")
       ->capture_default_str()
-      ->check(number(0.004, 3600.0, "s"));
+      ->check(number(0.005, 3600.0, "s"));
   app.footer(
       "It ends on SIGTERM, SIGINT, or when the process that started it has ended.\n\n"
       "EXAMPLES\n  servo_emulator --output /tmp/robot\n  echo 'cable 0 7' > /tmp/robot/servo_emulator.commands\n\n"

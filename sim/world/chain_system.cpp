@@ -9,8 +9,8 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-/// [N s, N m s] An iteration ends when no entry of the gradient is larger. In a step of 4 ms it belongs to a force of
-/// 0.25 mN.
+/// [N s, N m s] An iteration ends when no entry of the gradient is larger. In a step of 5 ms it belongs to a force of
+/// 0.2 mN.
 constexpr double kTolerance = 1e-6;
 constexpr int kMostIterations = 50;
 /// The line search ends when the derivative has fallen to this share.

@@ -32,7 +32,9 @@ Tracking run(const RobotModel& robot, const Trial& trial) {
   Scenario scenario;
   scenario.friction.ground_scale = trial.friction_share;
   scenario.body.mass_scale = trial.mass_share;
-  World world(robot, scenario);
+  SolverSettings settings;  // whole steps make a tick
+  settings.step_s = trial.period_s / std::ceil(trial.period_s / settings.step_s - 1e-9);
+  World world(robot, scenario, settings);
   MethodDriver driver(robot, {trial.method, trial.config, trial.period_s, trial.frequency_hz, trial.curvature_1_m});
   std::mt19937_64 random(kSeed);
   std::normal_distribution<double> noise(0.0, robot.joint_position_noise_rad);
