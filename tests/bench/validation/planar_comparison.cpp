@@ -75,20 +75,39 @@ const std::vector<Sweep>& sweeps() {
 }
 
 /// Compares the speeds of the defaults after both models have been refined: a tenth of the smoothing of Coulomb's law
-/// in the planar model, an eighth of the step in the simulation.
+/// in the planar model, a tenth of the step in the simulation.
 Case compare_fine_solutions() {
   const RobotModel robot = mamba();
   const Setting setting;
   GroundFriction sharp{FrictionLaw::kCoulomb, setting.along, setting.across};
   sharp.smoothing_m_s *= 0.1;
   SolverSettings fine;
-  fine.step_s /= 8.0;
+  fine.step_s *= 0.1;
   const PlanarModel model(planar_robot(robot, FrictionPlaces::kModuleEnds), sharp);
   return {"defaults, both models refined: ends",
           "m/s",
           measure_planar(model, setting.gait, 3, 1, 2e-5).speed_m_s,
           measure_gait(robot, lateral_gait(robot, setting.gait), fine).speed_m_s,
           0.01,
+          true,
+          false};
+}
+
+/// Compares the torque after the servos have become a thousand times as stiff: the joints then follow their setpoints
+/// as exactly as those of the planar model, and the points that do not slip hold the same forces against each other.
+Case compare_stiff_servos(double planar_nm) {
+  RobotModel robot = mamba();
+  for (JointModel& joint : robot.joints) {
+    joint.position_gain_nm_rad *= 1000.0;
+    joint.velocity_gain_nm_s_rad *= 30.0;
+  }
+  SolverSettings fine;
+  fine.step_s *= 0.1;
+  return {"defaults, servos a thousand times as stiff: rms torque of the joints, ends",
+          "Nm",
+          planar_nm,
+          measure_gait(robot, lateral_gait(robot, {}), fine).torque_rms_nm,
+          0.05,
           true,
           false};
 }
@@ -148,7 +167,7 @@ Section check_planar_model() {
       "(\"ends\"), or, without an aim, on the centre of each module (\"modules\"). The aim for the speed is 10 %, "
       "or 0.005 m/s "
       "where the gait hardly propels. The torques are less certain than the speeds: points that do not slip across "
-      "the body hold forces against each other that no law determines.",
+      "the body hold forces against each other, which depend on how far the servos yield.",
       {},
       {},
       {}};
@@ -158,6 +177,7 @@ Section check_planar_model() {
   section.cases.push_back({"defaults: power that friction takes, ends", "W", usual.ends.power_w,
                            usual.simulated.friction_j / usual.simulated.duration_s, kAim, true, false});
   section.cases.push_back(compare_fine_solutions());
+  section.cases.push_back(compare_stiff_servos(usual.ends.torque_rms_nm));
   Figure figure{"Speed of lateral undulation: simulation and planar model", "planar_model.png", {}};
   for (const Sweep& sweep : sweeps()) compare_sweep(section, figure, sweep);
   section.figures.push_back(figure);
