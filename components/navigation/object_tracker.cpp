@@ -11,14 +11,21 @@ namespace {
 /// The object of this colour that counts, by the rules of take_places(). Null: there is none.
 const msg::MapObject* object_of(const msg::FieldMap& map, std::uint8_t colour, const Eigen::Vector2d& p_MH,
                                 std::uint16_t named, const Sighting& last) {
+  // The map learns of an image later than the sighting does. What the image shows may also be too far away, or too
+  // indistinct, for the map: then it says nothing about which landmark it is.
+  constexpr std::int64_t kImagesBehind_ticks = 15;
   const msg::MapObject* best = nullptr;
+  const auto shown = [&](const msg::MapObject& landmark) {
+    return last.visible && landmark.last_seen_tick + kImagesBehind_ticks >= last.seen_tick;
+  };
   const auto apart_m = [&](const msg::MapObject& landmark) {
     return (Eigen::Vector2d(landmark.x_m, landmark.y_m) - p_MH).norm();
   };
   const auto better = [&](const msg::MapObject& one, const msg::MapObject& other) {
-    if (last.visible && one.last_seen_tick != other.last_seen_tick) return one.last_seen_tick > other.last_seen_tick;
+    if (shown(one) != shown(other)) return shown(one);
+    if (shown(one) && one.last_seen_tick != other.last_seen_tick) return one.last_seen_tick > other.last_seen_tick;
     if ((one.handle == named) != (other.handle == named)) return one.handle == named;
-    if (!last.visible && (one.handle == last.handle) != (other.handle == last.handle)) return one.handle == last.handle;
+    if (!shown(one) && (one.handle == last.handle) != (other.handle == last.handle)) return one.handle == last.handle;
     return apart_m(one) < apart_m(other);
   };
   for (const msg::MapObject& landmark : landmarks_of(map)) {

@@ -58,8 +58,9 @@ void update_visibility(const ObjectTrackerConfig& config, const msg::ObjectPerce
                        ObjectTrackerState& state);
 
 /// Takes the places from a new map. Of several objects of a colour that the newest image shows, the one with the handle
-/// `named` counts (0: none is named), otherwise the one that is nearest to the head. While the images show none, the
-/// last one remains, until the map gives it up. An object that the robot carries is none.
+/// `named` counts (0: none is named), otherwise the one that is nearest to the head. While the images show none, or
+/// one that is not in the map, the last one remains, until the map gives it up. An object that the robot carries is
+/// none.
 void take_places(const ObjectTrackerConfig& config, const msg::FieldMap& map, const Eigen::Vector2d& p_MH,
                  std::uint16_t named, ObjectTrackerState& state);
 

@@ -42,6 +42,7 @@ struct TaskOptions {
   std::map<std::string, std::string> parameters;
   std::vector<std::string> path;  ///< points "X,Y"
   TaskWaitOptions wait;
+  bool has_planner = true;  ///< the run may have the built-in planner
 };
 
 void print_json(const Json& json) { fmt::print("{}\n", json_text(json)); }
@@ -57,13 +58,17 @@ void print_nothing_done(const std::string& name, const std::string& why) {
 
 /// Runs `use` for `task NAME`.
 int with_client(const std::string& name, const TaskOptions& options, int (*use)(RequestClient&, const TaskOptions&)) {
-  RequestClient client(join_run(options.run).domain, operator_options(kSource, 0ms, /*detached=*/true));
+  const RunNote run = join_run(options.run);
+  RequestClient client(run.domain, operator_options(kSource, 0ms, /*detached=*/true));
   std::string reason;
   if (const int status = connect(client, "task", &reason); status != exit_status::kOk) {
     if (options.wait.json) print_nothing_done(name, reason);
     return status;
   }
-  return use(client, options);
+  TaskOptions known = options;
+  known.has_planner = run.roster.empty() || std::find(run.roster.begin(), run.roster.end(),
+                                                      topics::kPlannerRequest.writer) != run.roster.end();
+  return use(client, known);
 }
 
 /// Runs `task NAME`. With --json, a script reads from standard output why nothing was done, also after wrong usage and
@@ -118,6 +123,9 @@ int give_back(RequestClient& client) {
 int start(RequestClient& client, const TaskOptions& options) {
   const msg::Request request = request_of(options);
   const bool held = client.holds_authority();
+  // If nobody has authority beside the built-in planner, it waits after an emergency stop until a source releases it.
+  const bool planner_waits =
+      options.has_planner && client.authority() && client.authority()->level == msg::kAuthorityNone;
   try {
     const std::uint64_t goal = client.start_goal(request);
     if (options.wait.json)
@@ -133,7 +141,11 @@ int start(RequestClient& client, const TaskOptions& options) {
     // Navigation refuses what the robot cannot do now, after `input` has given authority to this command. The grant
     // proves it: the message with the new authority may arrive later than navigation's refusal.
     const bool took = !held && client.goal() != 0;
-    if (took && error.cause() == CommandError::Cause::kRefused) {
+    if (took && planner_waits && error.cause() == CommandError::Cause::kRefused) {
+      std::fprintf(stderr,
+                   "  nobody had authority; this script keeps it, so that the robot stands: after `constrictor "
+                   "release` the planner goes on\n");
+    } else if (took && error.cause() == CommandError::Cause::kRefused) {
       std::fprintf(stderr, client.release(2s)
                                ? "  authority was released: a planner may take it again\n"
                                : "  authority is still with this script; `constrictor release` gives it back\n");
@@ -240,8 +252,9 @@ void add_task(CLI::App& app, Action& action) {
       ->option_text("X,Y X,Y...");
   start_app->footer(help_footer(
       "Waits for the answers of `input` and navigation, and prints the goal's number. Where the robot is on the map:\n"
-      "`constrictor topic echo guidance/pose --count 1`. A task that is refused leaves authority as it was. Ctrl-C "
-      "before the answers\ncancels the task and releases authority.",
+      "`constrictor topic echo guidance/pose --count 1`. A task that is refused leaves authority as it was; "
+      "if nobody had it\nbeside a planner, as after an emergency stop, the script keeps it. Ctrl-C before the answers "
+      "cancels the task and\nreleases authority.",
       {"constrictor task start follow_line --line-colour blue", "constrictor task start explore --direction forwards",
        "constrictor task start rotate --direction left --json",
        "constrictor task start follow_path --path 0,0 1,0 2,0.5"},

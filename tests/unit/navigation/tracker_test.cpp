@@ -175,5 +175,26 @@ TEST(ObjectTracker, OfSeveralObjectsTheNamedOneOrTheNearestInViewCounts) {
   EXPECT_EQ(counting(3), 1) << "what the robot carries does not stand anywhere";
 }
 
+// A blob that is too far away for the map may be any of several objects, also the one that was seen longest ago.
+TEST(ObjectTracker, AnObjectThatIsSeenButNotInTheMapLeavesTheChoiceAsItWas) {
+  ObjectTrackerState state;
+  const Sighting& object = state.objects[msg::kColourGreen];
+  std::vector<msg::MapObject> twins = {landmark(4, msg::kBlobObject, -4.0, 0.0),
+                                       landmark(6, msg::kBlobObject, 3.5, 0.0)};
+  twins[0].last_seen_tick = 600;
+  twins[1].last_seen_tick = 100;
+  images(one_blob(msg::kBlobObject, 1000), 5, state);
+  ASSERT_TRUE(object.visible);
+  const auto counting = [&](std::uint16_t named) {
+    take_places({}, map_of(twins), {0.0, 0.0}, named, state);
+    return object.handle;
+  };
+  EXPECT_EQ(counting(6), 6);
+  EXPECT_EQ(counting(0), 6) << "the one that was named before";
+  EXPECT_EQ(counting(4), 4);
+  twins[1].last_seen_tick = 990;
+  EXPECT_EQ(counting(4), 6) << "the map has the image by now";
+}
+
 }  // namespace
 }  // namespace constrictor
