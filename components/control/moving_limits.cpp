@@ -17,7 +17,11 @@ namespace {
 // and with less than the second one less than a quarter.
 constexpr double kLeastRange_rad = 0.18, kEnoughRange_rad = 0.25;  // to each side
 constexpr double kLeastTorque_nm = 0.45, kEnoughTorque_nm = 0.6;
+// Of three missions with 1 Nm/rad none succeeds, with 2 and with 3 one, with 6 and more all (`short`).
+constexpr double kLeastGain_nm_rad = 1.5, kEnoughGain_nm_rad = 6.0;
 constexpr double kLeastRate = 0.17, kEnoughRate = 0.212;  // by the rate of the wave at its highest frequency
+
+constexpr std::size_t kMostModules = 44;  // `short`: with 40 and 44 two missions of two succeed, with 50 and 60 none
 
 /// A bound for a value of most yaw joints.
 struct JointBound {
@@ -76,10 +80,18 @@ CheckVerdict judge_joints(const RobotModel& robot, const ControlConfig& config) 
         JointBound{"min_rad", &JointModel::min_rad, -1.0, least_rad, enough_rad, kBothSides},
         JointBound{"max_torque_nm", &JointModel::max_torque_nm, 1.0, weight * kLeastTorque_nm,
                    weight * kEnoughTorque_nm, "weaker joints do not push a body of this mass over the ground"},
+        JointBound{"position_gain_nm_rad", &JointModel::position_gain_nm_rad, 1.0, weight * kLeastGain_nm_rad,
+                   weight * kEnoughGain_nm_rad, "softer servos do not hold the wave against the ground"},
         JointBound{"max_speed_rad_s", &JointModel::max_speed_rad_s, 1.0, kLeastRate * rate_rad_s,
                    kEnoughRate * rate_rad_s,
                    "slower joints do not follow its wave, which a smaller wave.most_hz of control makes slower"}})
     judge_joint(robot, bound, verdict);
+  if (robot.module_count > kMostModules) {
+    verdict.warnings.push_back(
+        fmt::format("the robot {}: module.count: found {}, missions succeed with up to {}: all that were tried with 50 "
+                    "and more failed",
+                    robot.name, robot.module_count, kMostModules));
+  }
   return verdict;
 }
 

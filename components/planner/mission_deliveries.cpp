@@ -239,7 +239,7 @@ bool MissionPlanner::choose_object() {
   return next < config_.sequence.size();
 }
 
-MissionState MissionPlanner::end_of_sequence() {
+std::string MissionPlanner::not_delivered() const {
   std::string left;
   for (std::size_t i = 0; i < config_.sequence.size(); ++i) {
     if (done(i)) continue;
@@ -248,6 +248,11 @@ MissionState MissionPlanner::end_of_sequence() {
     const Attempts& tried = memory_.attempts[i];
     left += fmt::format(" ({} attempts failed, the last in {})", tried.failures, tried.reason);
   }
+  return left;
+}
+
+MissionState MissionPlanner::end_of_sequence() {
+  const std::string left = not_delivered();
   return left.empty() ? kDone : fail("not delivered: " + left);
 }
 

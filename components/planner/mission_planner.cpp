@@ -310,7 +310,9 @@ std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs
 
 std::optional<MissionState> MissionPlanner::next_by_time(const PlannerInputs& inputs) {
   if (memory_.active_s > config_.mission_timeout_s) {
-    return fail("the time limit of the mission passed in state " + std::string(name_of(memory_.state)));
+    const std::string left = not_delivered();
+    return fail("the time limit of the mission passed in state " + std::string(name_of(memory_.state)) +
+                (left.empty() ? "" : "; it has not delivered " + left));
   }
   if (!memory_.requested) return std::nullopt;  // it pauses after a refusal
   const double in_state_s = memory_.active_s - memory_.entered_s;

@@ -118,6 +118,8 @@ class MissionPlanner {
   bool choose_object();
   /// The state at the end of the sequence: failed if an object was put aside and not delivered later.
   [[nodiscard]] MissionState end_of_sequence();
+  /// The objects that are not delivered, and why, for people; empty: all are.
+  [[nodiscard]] std::string not_delivered() const;
   /// Counts a failure with the present object. Returns the state of the next attempt, which differs from all earlier
   /// ones, or puts the object aside and returns the state in which the next one is looked for. `why`: for people.
   [[nodiscard]] MissionState try_differently(const std::string& why);

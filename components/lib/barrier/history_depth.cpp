@@ -51,7 +51,8 @@ std::optional<std::string> depth_violation(const std::vector<Hello>& members, co
         if (needed <= kept) continue;
         return fmt::format(
             "latency_ticks: found {} of {}, which writes {}, and {} of {}, which reads it: a restarted reader would "
-            "need the samples of {} steps, but the topic keeps {}",
+            "need the samples of {} steps, but the topic keeps {}; choose a smaller latency (of the camera: "
+            "camera.latency_ticks of the robot file, of the others: latency_ticks of the manifest)",
             writer_latency, writer.component, topic.name, reader.timing.latency, reader.component, needed, kept);
       }
     }

@@ -28,7 +28,8 @@ constexpr std::array kNeeds = {
 
 std::string colour_problem(const char* what, std::uint8_t colour) {
   if (colour != msg::kColourUnknown && colour < msg::kColourCount) return {};
-  return fmt::format("{} colour: found {}, accepted {}", what, name_of(constants::kColour, colour),
+  return fmt::format("{} colour: found {}, accepted {}", what,
+                     colour == msg::kColourUnknown ? "none" : name_of(constants::kColour, colour),
                      listed(constants::kColour, msg::kColourGreen));
 }
 

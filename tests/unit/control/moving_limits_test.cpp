@@ -47,6 +47,9 @@ TEST(MovingLimits, AreThoseThatWereMeasured) {
                                             {&JointModel::max_torque_nm, 0.44, "refused"},
                                             {&JointModel::max_torque_nm, 0.5, "warned"},
                                             {&JointModel::max_torque_nm, 0.6, "accepted"},
+                                            {&JointModel::position_gain_nm_rad, 1.0, "refused"},
+                                            {&JointModel::position_gain_nm_rad, 3.0, "warned"},
+                                            {&JointModel::position_gain_nm_rad, 6.0, "accepted"},
                                             {&JointModel::max_rad, 0.15, "refused"},
                                             {&JointModel::max_rad, 0.2, "warned"},
                                             {&JointModel::max_rad, 0.25, "accepted"},
@@ -66,6 +69,14 @@ TEST(MovingLimits, NameKeyFoundAcceptedAndReason) {
   EXPECT_EQ(judge_joints(with(&JointModel::max_speed_rad_s, 0.9), {}).warnings.at(0),
             "the robot mamba hardly moves: joints.max_speed_rad_s: found 0.9, it moves well from 1: slower joints do "
             "not follow its wave, which a smaller wave.most_hz of control makes slower");
+}
+
+TEST(MovingLimits, WarnOfABodyThatIsTooLong) {
+  RobotModel robot = mamba();
+  robot.module_count = 50;
+  robot.joints.resize(49, robot.joints.front());
+  EXPECT_NE(judge_joints(robot, {}).warnings.at(0).find("module.count: found 50, missions succeed with up to 44"),
+            std::string::npos);
 }
 
 TEST(MovingLimits, FollowTheMassAndTheWave) {

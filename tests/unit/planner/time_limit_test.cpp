@@ -49,7 +49,8 @@ TEST_F(PlannerTest, TheMissionHasATimeLimit) {
   config_.mission_timeout_s = 20.0;
   steps(1002);
   EXPECT_EQ(memory_.state, kFailed);
-  EXPECT_NE(memory_.reason.find("time"), std::string::npos);
+  EXPECT_NE(memory_.reason.find("time limit of the mission"), std::string::npos) << memory_.reason;
+  EXPECT_NE(memory_.reason.find("; it has not delivered green; red"), std::string::npos) << memory_.reason;
 }
 
 // Within the longest time limit, the planner requests another task or the mission has ended.

@@ -69,9 +69,11 @@ TEST(HistoryDepth, TheLongestLatencyThatATopicAllowsIsAcceptedAndOneMoreIsNot) {
     return depth_violation({member("guidance", writer, {}, kPose), member("navigation", reader, kPose, {})}, "physics");
   };
   EXPECT_EQ(pair(kKept / 2, kKept / 2), std::nullopt);
-  EXPECT_EQ(pair(kKept / 2, kKept / 2 + 1).value_or(""),
-            "latency_ticks: found 8 of guidance, which writes guidance/pose, and 9 of navigation, which reads it: a "
-            "restarted reader would need the samples of 17 steps, but the topic keeps 16");
+  EXPECT_EQ(
+      pair(kKept / 2, kKept / 2 + 1).value_or(""),
+      "latency_ticks: found 8 of guidance, which writes guidance/pose, and 9 of navigation, which reads it: a "
+      "restarted reader would need the samples of 17 steps, but the topic keeps 16; choose a smaller latency (of the "
+      "camera: camera.latency_ticks of the robot file, of the others: latency_ticks of the manifest)");
 }
 
 TEST(HistoryDepth, ATopicThatIsWrittenAfterImagesNeedsFewerSamples) {
