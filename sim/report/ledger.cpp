@@ -32,6 +32,9 @@ void ObjectLedger::on_mission(const msg::MissionStatus& mission, bool carrying) 
     sequence[mission.object_index] = mission.colour;
   // A planner may look at an object or search for it without bringing it to a zone; this is no attempt.
   if (!carrying) return;
+  // Nor does it change the order that an object is brought back which was pushed off its zone after it had been
+  // dropped.
+  if (held >= 0 && objects[static_cast<std::size_t>(held)].dropped) return;
   const bool same = !attempted.empty() && attempted.back() == mission.object_index;
   if (mission.object_index >= sequence.size() || same) return;
   std::erase(attempted, mission.object_index);
@@ -69,9 +72,10 @@ void ObjectLedger::on_event(const msg::TaskEvent& event, const msg::SceneDescrip
     held = -1;
   } else if (event.event == msg::kEventDroppingDone) {
     if (held >= 0) {
-      objects[static_cast<std::size_t>(held)].dropped = true;
-      objects[static_cast<std::size_t>(held)].drop_tick = world.header.tick;
-      objects[static_cast<std::size_t>(held)].by_others = event.goal_id >> 48 != msg::kAuthorityPlanner;
+      ObjectRecord& record = objects[static_cast<std::size_t>(held)];
+      if (!record.dropped) record.drop_tick = world.header.tick;
+      record.dropped = true;
+      record.by_others = event.goal_id >> 48 != msg::kAuthorityPlanner;
     }
     held = -1;
   }

@@ -13,7 +13,7 @@ namespace constrictor::report {
 struct ObjectRecord {
   bool grasped = false;
   bool dropped = false;
-  std::int64_t drop_tick = -1;  ///< tick of the last drop; -1: not dropped
+  std::int64_t drop_tick = -1;  ///< tick of the first drop; -1: not dropped
   bool by_others = false;       ///< the goal that dropped it came from an operator or external planner
 
   template <class Archive>
@@ -33,10 +33,11 @@ struct ZoneVerdict {
 
 /// Follows the objects through the events of the tasks. Ground truth decides which object an event is about.
 struct ObjectLedger {
-  std::vector<ObjectRecord> objects;     ///< in the order of the scene
-  std::int32_t held = -1;                ///< index of the object in the robot's grip; -1: none
-  std::vector<std::uint8_t> sequence;    ///< colours in the mission's order; kColourUnknown: not yet announced
-  std::vector<std::uint16_t> attempted;  ///< indices of the sequence in the order in which they were last carried
+  std::vector<ObjectRecord> objects;   ///< in the order of the scene
+  std::int32_t held = -1;              ///< index of the object in the robot's grip; -1: none
+  std::vector<std::uint8_t> sequence;  ///< colours in the mission's order; kColourUnknown: not yet announced
+  std::vector<std::uint16_t>
+      attempted;  ///< indices of the sequence in the order in which they were last carried before they were dropped
 
   void start(const msg::SceneDescription& scene);
   /// `carrying`: the robot holds an object.
@@ -45,8 +46,8 @@ struct ObjectLedger {
   void on_event(const msg::TaskEvent& event, const msg::SceneDescription& scene, const msg::WorldState& world);
   /// The reasons, in words, why the mission is not complete; empty if it is complete. A mission is complete if every
   /// object of the sequence was dropped and lies in the zone of its colour. The objects that the built-in planner
-  /// dropped must have been dropped in the order of the sequence, apart from those that it put aside and announced
-  /// again later; an operator or an external planner may use another order.
+  /// dropped must have been dropped for the first time in the order of the sequence, apart from those that it put
+  /// aside and announced again later; an operator or an external planner may use another order.
   [[nodiscard]] std::string shortfall(const msg::SceneDescription& scene, const msg::WorldState& world) const;
   /// Whether as many objects of each colour as `demanded` names lie in zones of their colour, and not in the robot's
   /// grip. It does not matter who brought them there, nor in which order.
@@ -59,7 +60,7 @@ struct ObjectLedger {
   }
 
  private:
-  /// Indices of the dropped objects in the order in which they were dropped.
+  /// Indices of the dropped objects in the order in which they were first dropped.
   [[nodiscard]] std::vector<std::size_t> dropped() const;
   /// Index of the object of this colour that is nearest to the robot's body, at most `reach_m` away; -1 if there is
   /// none.
