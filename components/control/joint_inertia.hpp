@@ -19,8 +19,8 @@ class JointInertia {
   [[nodiscard]] std::size_t joint_count() const { return joints_.size(); }
   [[nodiscard]] const std::vector<std::size_t>& joints() const { return joints_; }
 
-  /// [kg m²] M(q), n x n: torques u give the rates q' of the joints the accelerations M^-1 u, apart from terms that are
-  /// quadratic in the rates. `angle_rad`: angles of the joints, n entries.
+  /// [kg m²] M(q), n x n: torques u give the rates q' of the joints the accelerations M^-1 u, apart from terms that
+  /// are quadratic in the rates. `angle_rad`: angles of the joints, n entries.
   /// Derivation: with the headings h of the links, the kinetic energy relative to the centre of mass is h'^T W h' / 2,
   /// W_jk = A_jk cos(h_j - h_k) + I_j [j = k], where A follows from the masses and lengths of the links. The angles are
   /// q = D h, so that M = (D W^-1 D^T)^-1 + J, where J is the inertia of the rotors.

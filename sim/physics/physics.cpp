@@ -8,6 +8,7 @@
 #include "component/data_path.hpp"
 #include "constrictor/archive.hpp"
 #include "sim/physics/scene_description.hpp"
+#include "sim/scenario_loader/layout_check.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 
 namespace constrictor {
@@ -92,6 +93,10 @@ std::vector<DemandedObject> Physics::demanded_objects(const std::vector<std::uin
     }
   }
   return demanded;
+}
+
+CheckVerdict Physics::judge_scene() const {
+  return {{}, find_obstacles_on_line(world_.scenario(), world_.robot().module_radius_m)};
 }
 
 std::string Physics::save() const { return save_bytes(world_.save(), sensors_, perturbations_, gate_, scene_written_); }

@@ -12,7 +12,7 @@
 
 namespace constrictor {
 
-class Physics final : public Plant, public ObjectSource {
+class Physics final : public Plant, public ObjectSource, public SceneJudge {
  public:
   /// Reads the robot, the scenario with its seed, and the configuration. Throws ConfigurationError.
   Physics(Wiring& wiring, const Setup& setup);
@@ -27,6 +27,9 @@ class Physics final : public Plant, public ObjectSource {
   void load(const std::string& bytes) override;
 
   [[nodiscard]] std::vector<DemandedObject> demanded_objects(const std::vector<std::uint8_t>& colours) const override;
+
+  /// Warns of obstacles on the line.
+  [[nodiscard]] CheckVerdict judge_scene() const override;
 
   [[nodiscard]] const World& world() const { return world_; }
   [[nodiscard]] const GateState& gate() const { return gate_.state(); }

@@ -57,7 +57,9 @@ struct PhysicsConfig : PlantParameters {
   void complete(const Configuration& root) const {
     for (std::size_t i = 0; i < stop_at_ticks.size(); ++i) {
       if (stop_at_ticks[i] != std::floor(stop_at_ticks[i]) || (i > 0 && stop_at_ticks[i] <= stop_at_ticks[i - 1]))
-        throw root.error("stop_at_ticks", "found ticks that do not rise, or fractions, accepted rising whole ticks");
+        throw root.error("stop_at_ticks",
+                         "found numbers that are not whole, or not in rising order, accepted whole ticks in rising "
+                         "order");
     }
     const double steps = control_period_s / solver.step_s;
     if (steps >= 0.5 && std::abs(steps - std::round(steps)) <= 1e-6) return;

@@ -40,10 +40,14 @@ Footprint footprint(std::string name, BodyShape shape, const Eigen::Vector3d& si
   return {std::move(name), shape == BodyShape::kCylinder, at, size.x(), 0.5 * size.head<2>(), yaw};
 }
 
+/// [m] from a point to a rectangle; 0 inside it.
+double distance_m(const Footprint& rectangle, const Vector2d& point) {
+  const Vector2d p = rectangle.to_local(point);
+  return (p - p.cwiseMax(-rectangle.half).cwiseMin(rectangle.half)).norm();
+}
+
 bool rectangle_hits_disc(const Footprint& rectangle, const Footprint& disc) {
-  const Vector2d p = rectangle.to_local(disc.centre);
-  const Vector2d q = p.cwiseMax(-rectangle.half).cwiseMin(rectangle.half);
-  return (p - q).norm() < disc.radius;
+  return distance_m(rectangle, disc.centre) < disc.radius;
 }
 
 /// Two rectangles do not overlap if the sides of one of them separate them (separating axis theorem).
@@ -59,6 +63,11 @@ bool rectangles_hit(const Footprint& a, const Footprint& b) {
     if ((low.array() >= one->half.array()).any() || (high.array() <= -one->half.array()).any()) return false;
   }
   return true;
+}
+
+Footprint footprint_of(const Scenario& scenario, std::size_t obstacle) {
+  const ScenarioObstacle& one = scenario.obstacles[obstacle];
+  return footprint(fmt::format("obstacles[{}]", obstacle), one.shape, one.size_m, one.position_m, one.yaw_rad);
 }
 
 bool overlap(const Footprint& a, const Footprint& b) {
@@ -91,13 +100,32 @@ std::string find_overlap(const Scenario& scenario, double body_length_m, double 
       if (overlap(moving[i], moving[j])) return moving[i].name + " overlaps " + moving[j].name;
     }
     for (std::size_t j = 0; j < scenario.obstacles.size(); ++j) {
-      const ScenarioObstacle& obstacle = scenario.obstacles[j];
-      const Footprint fixed = footprint(fmt::format("obstacles[{}]", j), obstacle.shape, obstacle.size_m,
-                                        obstacle.position_m, obstacle.yaw_rad);
+      const Footprint fixed = footprint_of(scenario, j);
       if (overlap(moving[i], fixed)) return moving[i].name + " overlaps " + fixed.name;
     }
   }
   return {};
+}
+
+std::vector<std::string> find_obstacles_on_line(const Scenario& scenario, double body_half_width_m) {
+  std::vector<std::string> found;
+  for (std::size_t j = 0; j < scenario.obstacles.size(); ++j) {
+    const Footprint obstacle = footprint_of(scenario, j);
+    double along_m = 0.0;
+    for (std::size_t i = 0; i < scenario.line_m.size(); ++i) {
+      const Vector2d& point = scenario.line_m[i];
+      if (i > 0) along_m += (point - scenario.line_m[i - 1]).norm();
+      const double apart_m =
+          obstacle.disc ? (point - obstacle.centre).norm() - obstacle.radius : distance_m(obstacle, point);
+      if (apart_m >= body_half_width_m) continue;
+      found.push_back(
+          fmt::format("{} stands on the line, {:.2f} m from its beginning: the robot cannot follow the line "
+                      "there",
+                      obstacle.name, along_m));
+      break;
+    }
+  }
+  return found;
 }
 
 }  // namespace constrictor

@@ -1,7 +1,8 @@
-// Checks that no bodies overlap at the start.
+// Checks that no bodies overlap at the start, and that no obstacle stands on the line.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "sim/scenario_loader/scenario.hpp"
 
@@ -16,5 +17,8 @@ inline constexpr double kDrawnBodyHalfWidth_m = 0.06;
 /// robot's body is treated as a strip of the given length behind the head, with the given half width.
 [[nodiscard]] std::string find_overlap(const Scenario& scenario, double body_length_m = kDrawnBody_m,
                                        double body_half_width_m = kDrawnBodyHalfWidth_m);
+
+/// A text for each obstacle that leaves a robot of this half width no room to move along the line.
+[[nodiscard]] std::vector<std::string> find_obstacles_on_line(const Scenario& scenario, double body_half_width_m);
 
 }  // namespace constrictor

@@ -38,6 +38,13 @@ class ObjectSource {
       const std::vector<std::uint8_t>& colours) const = 0;
 };
 
+/// A component that knows the true scene, and finds what hinders the mission in it.
+class SceneJudge {
+ public:
+  virtual ~SceneJudge() = default;
+  [[nodiscard]] virtual CheckVerdict judge_scene() const = 0;
+};
+
 /// A component that knows which objects it can deal with.
 class ObjectJudge {
  public:

@@ -165,6 +165,10 @@ Findings check_components(const HostOptions& options, const std::vector<Componen
         const auto line = [&](const std::string& what) { return setup.robot_file.string() + ": " + what; };
         add(judge->judge_robot(), line, findings);
       }
+      if (const auto* judge = dynamic_cast<const SceneJudge*>(built.component.get())) {
+        const auto line = [&](const std::string& what) { return setup.scenario_file.string() + ": " + what; };
+        add(judge->judge_scene(), line, findings);
+      }
       objects.ask(std::move(built), setup.mission);
     } catch (const std::exception& error) {
       if (reported.insert(error.what()).second) findings.errors.push_back(factory.name + ": " + error.what());

@@ -56,5 +56,26 @@ TEST(LayoutCheck, FindsOverlappingTurnedBoxes) {
   EXPECT_EQ(overlap_of(scene_with({box, other})), "objects[1] overlaps objects[0]");
 }
 
+TEST(LayoutCheck, FindsObstaclesOnTheLine) {
+  ScenarioObstacle wall;  // 0.1 m thick and 2 m wide
+  wall.size_m = {2.0, 0.1, 0.3};
+  ScenarioObstacle peg;
+  peg.shape = BodyShape::kCylinder;
+  peg.size_m = {0.05, 0.05, 0.3};
+  const auto on_line = [&](const Eigen::Vector2d& wall_m, const Eigen::Vector2d& peg_m) {
+    wall.position_m = wall_m;
+    peg.position_m = peg_m;
+    Scenario scenario = scene_with({}, {wall, peg});
+    for (int i = 0; i <= 200; ++i) scenario.line_m.emplace_back(0.0, 0.02 * i);
+    return find_obstacles_on_line(scenario, 0.035);
+  };
+  EXPECT_EQ(on_line({0.0, 5.0}, {0.09, 1.0}), std::vector<std::string>{}) << "there is room for the body";
+  EXPECT_EQ(on_line({0.9, 2.0}, {0.09, 1.0}),
+            std::vector<std::string>{"obstacles[0] stands on the line, 1.92 m from its beginning: the robot cannot "
+                                     "follow the line there"});
+  EXPECT_EQ(on_line({0.0, 5.0}, {0.08, 1.0}).size(), 1U) << "the line passes 0.03 m beside the peg";
+  EXPECT_EQ(on_line({0.0, 4.0}, {0.0, 0.0}).size(), 2U);
+}
+
 }  // namespace
 }  // namespace constrictor
