@@ -266,7 +266,7 @@ void GripSense::choose_torque(const msg::JointState& joints, bool feels, double 
 }
 
 bool GripSense::watch(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
-                      Grip& grip) const {
+                      Grip& grip, bool moves) const {
   const double share = -std::expm1(-dt_s / config_.lost_filter_s);
   grip.torque_nm += share * (mean_closing_nm(joints, grip.side) - grip.torque_nm);
   choose_torque(joints, feels, share, grip);
@@ -276,7 +276,8 @@ bool GripSense::watch(const msg::JointState& joints, const std::vector<Touch>& t
   const bool weak = grip.torque_nm < config_.lost_torque_nm && few_touches;
   // A large wave loads the base of an empty U, too: without any touch the torque proves nothing.
   const bool below = weak || (feels && grip.contact_share < config_.untouched_share);
-  grip.below_s = below ? grip.below_s + dt_s : 0.0;
+  if (!below) grip.below_s = 0.0;
+  else if (moves) grip.below_s += dt_s;
   return grip.below_s >= config_.lost_after_s;
 }
 

@@ -96,9 +96,9 @@ class GripSense {
 
   /// Advances the monitor of the grip by `dt_s`: the torque that holds the posture is larger while the base has opened.
   /// True when the object is lost: torque and touch have been too low for a while, or the torque alone if the robot
-  /// feels no touches.
-  bool watch(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s,
-             Grip& grip) const;
+  /// feels no touches. While the robot is not to move (`moves` is false) this time does not pass.
+  bool watch(const msg::JointState& joints, const std::vector<Touch>& touches, bool feels, double dt_s, Grip& grip,
+             bool moves = true) const;
   /// Resets the loss monitor at the beginning of a grasp, and chooses the torque that holds the posture of the grip.
   void hold_starts(Grip& grip) const;
 

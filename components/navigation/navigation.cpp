@@ -205,8 +205,9 @@ void Navigation::monitor_grip(const TaskInput& input, TaskOutput& output) {
   Grip& grip = state_.grip;
   // In an emergency stop the joints hold the measured posture, so that the body no longer presses the object: that it
   // feels none then proves nothing.
-  if (!state_.task && !state_.direct.active) return;
-  if (!grip.carrying || !grip_sense_.watch(input.joints, input.touches, input.feels, input.tick.dt_s(), grip)) return;
+  const bool moves = state_.task || state_.direct.active;
+  if (!grip.carrying || !grip_sense_.watch(input.joints, input.touches, input.feels, input.tick.dt_s(), grip, moves))
+    return;
   grip.carrying = false;
   write_event(msg::kEventObjectGraspLost, state_.goal.state, grip.colour, grip.handle,
               input.feels ? "the base touches no object, by its touches and its torque"

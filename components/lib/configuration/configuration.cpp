@@ -110,7 +110,9 @@ YAML::Node parse_root(const std::string& text, const std::string& name) {
   try {
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    throw located(name, std::max(error.mark.line, 0) + 1, "(syntax)", error.msg, "valid YAML");
+    const bool in_flow = error.msg.find("flow not found") != std::string::npos;
+    throw located(name, std::max(error.mark.line, 0) + 1, "(syntax)",
+                  error.msg + (in_flow ? " (is a comma or a closing bracket missing?)" : ""), "valid YAML");
   }
 }
 

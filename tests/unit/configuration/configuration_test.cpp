@@ -181,6 +181,9 @@ TEST(Configuration, NamesTheLineOfASyntaxError) {
   const std::string text = error_of([] { parse("a: 1\nb: [1, 2\nc: }\n"); });
   EXPECT_TRUE(text.starts_with("x.yaml:3: (syntax): found ")) << text;
   EXPECT_TRUE(text.ends_with(", accepted valid YAML")) << text;
+  EXPECT_EQ(error_of([] { parse("a: {b: [1, 2] c: 3}\n"); }),
+            "x.yaml:1: (syntax): found end of map flow not found (is a comma or a closing bracket missing?), accepted "
+            "valid YAML");
 }
 
 TEST(Configuration, NamesAMissingFile) {

@@ -151,6 +151,14 @@ class HoldTest : public TouchTest {
   msg::JointState u = u_joints(-1.0);
 };
 
+TEST_F(HoldTest, AGraspIsNotLostWhileTheRobotIsNotToMove) {
+  load(0.1);
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(grip_sense.watch(u, {}, true, 0.02, grip, false));
+  double time_s = 0.0;
+  while (!grip_sense.watch(u, {}, true, 0.02, grip) && time_s < 10.0) time_s += 0.02;
+  EXPECT_NEAR(time_s, config.lost_after_s, 0.03) << "the while begins when it moves";
+}
+
 TEST_F(HoldTest, AGraspIsLostOnlyAfterAWhileWithoutTorqueAndTouch) {
   std::vector<Touch> touch(1);
   touch[0].module = 12;

@@ -73,6 +73,8 @@ std::optional<EvaluationRecord> read_record(const fs::path& folder) {
 }
 
 std::string difference(const EvaluationRecord& found, const EvaluationRecord& wanted) {
+  if (found.scenario != wanted.scenario)
+    return fmt::format("it is of the scenario {}, and not of {}", found.scenario, wanted.scenario);
   if (found.vary != wanted.vary) {
     return fmt::format("--vary: found '{}' there, '{}' now", fmt::join(found.vary, " "), fmt::join(wanted.vary, " "));
   }
