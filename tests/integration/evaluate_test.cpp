@@ -215,6 +215,7 @@ TEST_F(Evaluate, RefusesWhatItCannotDo) {
   EXPECT_EQ(other.wait(30s), exit_status::kUsage);
   EXPECT_NE(other.errors().find("holds another evaluation: scenario has changed since"), std::string::npos)
       << other.errors();
+  write("41_ticks.yaml", "# another\n");
   Process another = evaluate(41, "f", {"--seeds", "1"});
   EXPECT_EQ(another.wait(30s), exit_status::kUsage);
   EXPECT_NE(another.errors().find("holds another evaluation: it is of the scenario 40_ticks, and not of 41_ticks"),

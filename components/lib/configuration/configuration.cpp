@@ -110,9 +110,7 @@ YAML::Node parse_root(const std::string& text, const std::string& name) {
   try {
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    const bool in_flow = error.msg.find("flow not found") != std::string::npos;
-    throw located(name, std::max(error.mark.line, 0) + 1, "(syntax)",
-                  error.msg + (in_flow ? " (is a comma or a closing bracket missing?)" : ""), "valid YAML");
+    throw located(name, std::max(error.mark.line, 0) + 1, "(syntax)", error.msg, "valid YAML (is a comma missing?)");
   }
 }
 
