@@ -122,7 +122,8 @@ TEST_F(WholeCaseStudy, SameHashWhenAnyProcessIsKilledAtRandomMoments) {
 TEST_F(WholeCaseStudy, SameHashWhenTheProcessWithAllMembersIsKilledAtRandomMoments) {
   const std::string expected = reference();
   PrintedRandom random;
-  Process launcher = start("all", {"--in-process"});
+  // Without this pace, the run may be over after three kills. It takes 25 s.
+  Process launcher = start("all", {"--in-process", "--pace", "6x"});
   for (int i = 0; i < 10 && launcher.running(); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(500 + random() % 3000));
     for (const auto& [pid, line] : command_lines()) {
