@@ -36,8 +36,8 @@ struct ObjectLedger {
   std::vector<ObjectRecord> objects;   ///< in the order of the scene
   std::int32_t held = -1;              ///< index of the object in the robot's grip; -1: none
   std::vector<std::uint8_t> sequence;  ///< colours in the mission's order; kColourUnknown: not yet announced
-  std::vector<std::uint16_t>
-      attempted;  ///< indices of the sequence in the order in which they were last carried before they were dropped
+  /// Indices of the sequence in the order in which they were last carried before they were dropped.
+  std::vector<std::uint16_t> attempted;
 
   void start(const msg::SceneDescription& scene);
   /// `carrying`: the robot holds an object.

@@ -1,5 +1,6 @@
-// What `--check` asks components, to find out before the start whether the robot can retrieve the objects that the
-// mission demands. Nothing of this reaches a component of the robot during a run.
+// What `--check` asks components, to find out before the start whether the scene hinders the mission, and whether the
+// robot can retrieve the objects that the mission demands. Nothing of this reaches a component of the robot during a
+// run.
 #pragma once
 
 #include <cmath>

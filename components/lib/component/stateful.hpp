@@ -8,8 +8,8 @@
 namespace constrictor {
 
 /// Implements the virtual functions `std::string save() const` and `void load(const std::string& bytes)` of `Interface`
-/// for an object whose whole state is one cereal-serialisable struct. load()
-/// throws cereal::Exception if the bytes end too early.
+/// for an object whose whole state is one cereal-serialisable struct. load() throws cereal::Exception if the bytes end
+/// too early.
 template <class Interface, class State>
 class Stateful : public Interface {
  public:
