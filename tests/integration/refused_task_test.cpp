@@ -1,30 +1,13 @@
 // Who has authority after `constrictor task start` was refused.
-#include "integration/run_watcher.hpp"
-#include "runtime/host.hpp"
+#include "integration/commanded_run.hpp"
 
 namespace constrictor::testing {
 namespace {
 
-using namespace std::chrono_literals;
-
-class RefusedTask : public CliFixture {
- protected:
-  /// A run of these processes, without camera and perception: no test here needs them.
-  [[nodiscard]] Process run(const std::string& processes) {
-    write("run.yaml", case_study_manifest(20, processes));
-    Process process =
-        start({"run", "--manifest", (dir_ / "run.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "4x"});
-    EXPECT_TRUE(process.wait_for("simulated", 30s)) << process.output() << process.errors();
-    return process;
-  }
-  void end(Process& launcher) {
-    EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
-    EXPECT_EQ(launcher.wait(10s), 128 + SIGTERM);
-  }
-};
+class RefusedTask : public CommandedRun {};
 
 TEST_F(RefusedTask, LeavesAuthorityAsItWas) {
-  Process launcher = run(kBlindProcesses);
+  Process launcher = run("4x");
   Watcher watcher(domain());
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
   EXPECT_EQ(command({"task", "start", "rotate"}), exit_status::kUsage);
@@ -49,7 +32,7 @@ TEST_F(RefusedTask, LeavesAuthorityAsItWas) {
 }
 
 TEST_F(RefusedTask, DoesNotSetThePlannerInMotionAfterAnEmergencyStop) {
-  Process launcher = run(std::string(kBlindProcesses) + "  - {components: [planner]}\n");
+  Process launcher = run("4x", std::string(kBlindProcesses) + "  - {components: [planner]}\n");
   Watcher watcher(domain());
   ASSERT_EQ(command({"stop"}), exit_status::kOk) << output_;
   ASSERT_EQ(command({"clear-stop"}), exit_status::kOk) << output_;

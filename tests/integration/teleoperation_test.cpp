@@ -5,8 +5,7 @@
 #include <csignal>
 #include <set>
 
-#include "integration/run_watcher.hpp"
-#include "runtime/host.hpp"
+#include "integration/commanded_run.hpp"
 #include "runtime/wire.hpp"
 
 namespace constrictor::testing {
@@ -14,23 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class Teleoperation : public CliFixture {
- protected:
-  Teleoperation() {
-    // The run has no camera and no perception: no test here needs them, and it is faster without them.
-    write("blind.yaml", case_study_manifest(20, kBlindProcesses));
-  }
-  [[nodiscard]] Process run_blind(const std::string& pace) {
-    Process process =
-        start({"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", pace});
-    EXPECT_TRUE(process.wait_for("simulated", 30s)) << process.output() << process.errors();
-    return process;
-  }
-  void end(Process& launcher) {
-    EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
-    EXPECT_EQ(launcher.wait(10s), 128 + SIGTERM);
-  }
-};
+class Teleoperation : public CommandedRun {};
 
 // The liveliness lease of `teleop` is 0.5 s of wall time. When it ends, `input` latches the loss of the operator at a
 // tick boundary. In lock-step, control reads the new authority in the next tick, so the setpoints of tick latched + 1
@@ -42,7 +25,7 @@ TEST_F(Teleoperation, JointsHoldWithinALeaseAndATickAfterTeleopIsKilled) {
   constexpr double kBusy_s = 0.25;  // allowance for a busy machine
   for (const std::string pace : {"2x", "realtime"}) {
     SCOPED_TRACE(pace);
-    Process launcher = run_blind(pace);
+    Process launcher = run(pace);
     Watcher watcher(domain());
     Process teleop = start({"teleop", "--drive", "0.5,0.2"});
     ASSERT_TRUE(teleop.wait_for("driving", 20s)) << teleop.errors();
@@ -81,7 +64,7 @@ TEST_F(Teleoperation, JointsHoldWithinALeaseAndATickAfterTeleopIsKilled) {
 }
 
 TEST_F(Teleoperation, LockStepIsLimitedToRealTimeWhileAnOperatorHasAuthority) {
-  Process launcher = run_blind("lockstep");
+  Process launcher = run("lockstep");
   Watcher watcher(domain());
   Process teleop = start({"teleop", "--drive", "0.3,0"});
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityOperator));
@@ -105,7 +88,7 @@ TEST_F(Teleoperation, LockStepIsLimitedToRealTimeWhileAnOperatorHasAuthority) {
 }
 
 TEST_F(Teleoperation, ClearingAnEmergencyStopStartsNoMotion) {
-  Process launcher = run_blind("4x");
+  Process launcher = run("4x");
   Watcher watcher(domain());
   ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left"}), exit_status::kOk) << output_;
   ASSERT_TRUE(watcher.moves());
@@ -141,7 +124,7 @@ TEST_F(Teleoperation, ClearingAnEmergencyStopStartsNoMotion) {
 TEST_F(Teleoperation, AScriptStartsATaskAndWaitsForEventsOfItsGoal) {
   EXPECT_EQ(command({"task", "start", "drop", "--drop-zone-colour", "pink"}), exit_status::kUsage)
       << "a wrong value is reported before a missing run";
-  Process launcher = run_blind("4x");
+  Process launcher = run("4x");
   ASSERT_EQ(command({"task", "start", "rotate", "--direction", "left"}), exit_status::kOk) << output_;
   const auto at = output_.find("goal ");
   ASSERT_NE(at, std::string::npos) << output_;
@@ -181,7 +164,7 @@ TEST_F(Teleoperation, AScriptStartsATaskAndWaitsForEventsOfItsGoal) {
 }
 
 TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndPrintsIt) {
-  Process launcher = run_blind("1x");
+  Process launcher = run("1x");
   Watcher watcher(domain());
   // Interrupted, `teleop --drive` stops the robot and releases authority.
   Process teleop = start({"teleop", "--drive", "0.3,0"});
