@@ -68,6 +68,10 @@ bool MissionPlanner::is_zone(const msg::Blob& blob, const PlannerInputs& inputs)
   return std::hypot(zone->x_m - x_m, zone->y_m - y_m) < kAnother_m + 3.0 * sd_m;
 }
 
+bool MissionPlanner::zone_found(const PlannerInputs& inputs) const {
+  return memory_.zone_images >= config_.confirm_images && (!inputs.map || zone_of(*inputs.map, colour()));
+}
+
 // An object that stands on the zone of its colour, after one of this colour was dropped there, is not fetched again.
 bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
   if (!inputs.pose) return false;

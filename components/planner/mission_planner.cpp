@@ -260,7 +260,7 @@ std::optional<MissionState> MissionPlanner::next_by_status(const PlannerInputs& 
 
 std::optional<MissionState> MissionPlanner::next_by_percepts(const PlannerInputs& inputs) {
   const bool object = memory_.object_images >= config_.confirm_images;
-  const bool zone = memory_.zone_images >= config_.confirm_images;
+  const bool zone = zone_found(inputs);
   // Just after the end of the line, only the end piece of the same line can be in view.
   const bool line = memory_.line_images >= config_.confirm_images &&
                     memory_.active_s - memory_.line_ended_s > scaled_s(config_.after_end_s);

@@ -109,7 +109,7 @@ TEST_F(AttemptPlanner, ADropThatDidNotReachTheZoneIsRepeatedFromElsewhere) {
   find_line();
   fetch(msg::kColourGreen);
   carry();
-  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  see_zone(msg::kColourGreen, 0.8);
   steps(4);
   for (const std::uint8_t side : {msg::kDirectionRight, msg::kDirectionLeft}) {
     ASSERT_EQ(memory_.state, kDrop);
@@ -221,7 +221,7 @@ TEST_F(ZonesAnywhere, AnObjectIsCarriedBackToAZoneThatTheMapHasThere) {
 TEST_F(ZonesAnywhere, AnEndOfTheLineAmongZonesMayHaveObjects) {
   find_line();
   drive(2.0);
-  see(msg::kColourRed, msg::kBlobZone, 1.5);
+  see_zone(msg::kColourRed, 1.5);
   step();
   succeed(msg::kEventEndOfLine);
   EXPECT_EQ(memory_.state, kSearchObject);

@@ -28,7 +28,7 @@ TEST_F(PlannerTest, ADropByThePlannerCountsAsDeliveredEvenIfAuthorityChangesAtTh
   find_line();
   fetch(msg::kColourGreen);
   carry();
-  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  see_zone(msg::kColourGreen, 0.8);
   steps(4);
   ASSERT_EQ(last_.task, msg::kTaskDrop);
   status_.carrying = false;

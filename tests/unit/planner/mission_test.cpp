@@ -89,7 +89,7 @@ TEST_F(PlannerTest, IgnoresZonesDistantObjectsAndObjectsOfAnotherColour) {
   find_line();
   see(msg::kColourRed, msg::kBlobObject, 0.6);
   steps(10);
-  see(msg::kColourGreen, msg::kBlobZone, 0.6);
+  see_zone(msg::kColourGreen, 0.6);
   steps(10);
   see(msg::kColourGreen, msg::kBlobObject, 2.2);
   steps(10);

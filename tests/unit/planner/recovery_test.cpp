@@ -60,7 +60,7 @@ TEST_F(PlannerTest, SearchesTheObjectAtTheEndOfTheLine) {
 TEST_F(PlannerTest, TurnsRoundAtAnEndOfTheLineAmongZones) {
   find_line();
   drive(2.0);
-  see(msg::kColourRed, msg::kBlobZone, 1.5);
+  see_zone(msg::kColourRed, 1.5);
   step();
   succeed(msg::kEventEndOfLine);
   EXPECT_EQ(memory_.state, kTurnRound);

@@ -120,7 +120,7 @@ TEST_F(RefusalTest, SearchesFurtherWhileADropIsRefusedAndGivesUpInTheEnd) {
   find_line();
   fetch(msg::kColourGreen);
   carry();
-  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  see_zone(msg::kColourGreen, 0.8);
   const auto is_drop = [](const WantedTask& wanted) { return wanted.task == msg::kTaskDrop; };
   run(10.0, "no drop zone of this colour was seen yet", is_drop);
   const auto drops =

@@ -9,6 +9,7 @@
 
 #include "constrictor/archive.hpp"
 #include "planner/mission_planner.hpp"
+#include "robot/landmarks.hpp"
 #include "robot/planar.hpp"
 
 namespace constrictor {
@@ -93,6 +94,13 @@ class PlannerTest : public ::testing::Test {
     objects_.blobs[0].object_probability = kind == msg::kBlobObject ? 0.99 : 0.01;
     objects_.blobs[0].range_m = range_m;
   }
+  /// Sees the zone of this colour straight ahead; the map knows it.
+  void see_zone(std::uint8_t colour, double range_m) {
+    see(colour, msg::kBlobZone, range_m);
+    if (zone_of(map_, colour)) return;
+    const double x_m = pose_.x_m + range_m * std::cos(pose_.yaw_rad), y_m = pose_.y_m + range_m * std::sin(pose_.yaw_rad);
+    map_.objects[map_.object_count++] = {1, colour, msg::kBlobZone, x_m, y_m, 0.4, 0.0, 0.03, false, false, tick_, 0.0};
+  }
   void see_nothing() {
     objects_ = {};
     see_line(false);
@@ -164,7 +172,7 @@ class PlannerTest : public ::testing::Test {
   }
   /// Drops the object until the robot has backed off, and says nothing of where it stands.
   void release(std::uint8_t colour) {
-    see(colour, msg::kBlobZone, 0.8);
+    see_zone(colour, 0.8);
     steps(4);
     EXPECT_EQ(memory_.state, MissionState::kDrop);
     EXPECT_EQ(last_.task, msg::kTaskDrop);

@@ -88,7 +88,7 @@ TEST_F(PlannerTest, ARobotThatIsCaughtNearAZoneIsLedAwayBeforeItDropsTheObject) 
   find_line();
   fetch(msg::kColourGreen);
   carry();
-  see(msg::kColourGreen, msg::kBlobZone, 0.8);
+  see_zone(msg::kColourGreen, 0.8);
   steps(4);
   ASSERT_EQ(memory_.state, MissionState::kDrop);
   map_dropped(msg::kColourGreen, 0.5);
