@@ -30,11 +30,12 @@ void ObjectLedger::on_mission(const msg::MissionStatus& mission, bool carrying) 
   if (sequence.size() < mission.object_count) sequence.resize(mission.object_count, msg::kColourUnknown);
   if (mission.object_index < sequence.size() && mission.colour != msg::kColourUnknown)
     sequence[mission.object_index] = mission.colour;
-  // A planner may look at an object or search for it without bringing it to a zone; this is no attempt.
-  if (!carrying) return;
+  // A planner may look at an object or search for it without bringing it to a zone; this is no attempt. The status may
+  // say that the robot carries an object before the event has told which one.
+  if (!carrying || held < 0) return;
   // Nor does it change the order that an object is brought back which was pushed off its zone after it had been
   // dropped.
-  if (held >= 0 && objects[static_cast<std::size_t>(held)].dropped) return;
+  if (objects[static_cast<std::size_t>(held)].dropped) return;
   const bool same = !attempted.empty() && attempted.back() == mission.object_index;
   if (mission.object_index >= sequence.size() || same) return;
   std::erase(attempted, mission.object_index);

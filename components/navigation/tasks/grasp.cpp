@@ -16,13 +16,14 @@ struct GraspState : PhaseState {
   int touching = 0;                                  ///< modules near the base that touched within touch_memory_s
   std::array<double, msg::kMaxModules> touched_s{};  ///< time since the last touch of each module
   PlanarPose before;                                 ///< the head at the previous step
+  PlanarPose seat_from;                              ///< the head when the seat began
   double slid_m = 0.0;                               ///< distance by which the arc has moved along the body
   int squeezes = 0;
   SteeringState steering;
   double speed_m_s = 0.0;  ///< smoothed speed of the head along its own axis
   template <class Archive>
   void serialize(Archive& archive) {
-    archive(phase, phase_s, seated_s, touching, touched_s, before, slid_m, squeezes, speed_m_s, steering);
+    archive(phase, phase_s, seated_s, touching, touched_s, before, seat_from, slid_m, squeezes, speed_m_s, steering);
   }
 };
 
@@ -78,7 +79,12 @@ class Grasp : public StatefulTask<GraspState> {
                                    : std::clamp(state_.speed_m_s, config.wrap_speed_min_m_s, config.wrap_speed_max_m_s);
     wrap_round(input.grip_sense, still ? 0.0 : config.wrap_m_s, grip.side, slide_m_s, grip, output);
     state_.slid_m += slide_m_s * input.tick.dt_s();
-    if (input.motion_done && state_.phase_s > 0.2) state_.enter(kSeat);
+    if (input.motion_done && state_.phase_s > 0.2) enter_seat(input);
+  }
+
+  void enter_seat(const TaskInput& input) {
+    state_.enter(kSeat);
+    state_.seat_from = input.X_MH;
   }
 
   void seat(const TaskInput& input, Grip& grip, TaskOutput& output) {
@@ -99,9 +105,18 @@ class Grasp : public StatefulTask<GraspState> {
     if (input.feels ? felt : state_.phase_s >= config.unfelt_seat_s) {
       state_.touched_s.fill(1e9);
       state_.enter(kSqueeze);
-    } else if (state_.phase_s > config.seat_timeout_s) {
+    } else if (state_.phase_s > config.seat_timeout_s || passed(input)) {
       state_.enter(kOpen);
     }
+  }
+
+  /// Whether the body has driven farther than the whole of it can need to bring its base to the object. In 116 grasps
+  /// the longest seat took 1.0 lengths of the body. Without this bound, a robot that had missed its object drove on for
+  /// 6 m, and did not find it again for a minute.
+  [[nodiscard]] bool passed(const TaskInput& input) const {
+    constexpr double kLengths = 1.25;
+    const double length_m = static_cast<double>(input.robot.module_count) * input.robot.module_length_m;
+    return (input.X_MH.p - state_.seat_from.p).norm() > kLengths * length_m;
   }
 
   /// Counts the modules near the base with a recent touch of the object: the gait interrupts touches.
@@ -133,7 +148,7 @@ class Grasp : public StatefulTask<GraspState> {
     if (!firm && !closed) return;
     if (!firm && ++state_.squeezes < config.squeeze_attempts) {
       state_.seated_s = 0.0;
-      state_.enter(kSeat);
+      enter_seat(input);
       return;
     }
     grip.shape_rad = input.grip_sense.hold_shape(input.joints, grip, input.feels);

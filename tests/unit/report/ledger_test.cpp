@@ -28,12 +28,9 @@ class LedgerTest : public ::testing::Test {
   /// The robot carries an object to its zone while the planner announces this entry of the mission.
   void carry(std::size_t object, std::uint16_t announced) {
     world_->module_poses[0].position_m = {0.1, places_m_[object], 0.0};
+    announce(announced);  // in a run, the status of the task is known before its events
     report(msg::kEventObjectGrasped, object);
-    msg::MissionStatus mission{};
-    mission.object_count = 2;
-    mission.object_index = announced;
-    mission.colour = colours_[announced];
-    ledger_.on_mission(mission, true);
+    announce(announced);
   }
   void drop(std::size_t object) { report(msg::kEventDroppingDone, object); }
   void lose(std::size_t object) { report(msg::kEventObjectGraspLost, object); }
@@ -42,6 +39,13 @@ class LedgerTest : public ::testing::Test {
   static constexpr std::size_t kGreen = 0, kRed = 1;
 
  private:
+  void announce(std::uint16_t index) {
+    msg::MissionStatus mission{};
+    mission.object_count = 2;
+    mission.object_index = index;
+    mission.colour = colours_[index];
+    ledger_.on_mission(mission, true);
+  }
   void report(std::uint8_t event, std::size_t object) {
     msg::TaskEvent message{};
     message.event = event;
