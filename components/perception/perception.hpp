@@ -11,7 +11,9 @@
 
 #include "component/component.hpp"
 #include "component/parameters.hpp"
+#include "component/robot_bounds.hpp"
 #include "perception/line_and_blob_detector.hpp"
+#include "perception/view_limits.hpp"
 #include "robot/ground_slope.hpp"
 #include "robot/planar.hpp"
 #include "robot/robot_model.hpp"
@@ -103,10 +105,11 @@ struct PerceptionState {
 /// of the configuration. The angles that the joints had at the exposure show which parts of the image are the robot's
 /// own body. The images of further cameras are processed in the same way, and their percepts have topics of their own.
 /// Only some images are drawn with their percepts (PictureTurn), because control does not need these pictures.
-class Perception : public TunableComponent<PerceptionState, perception::PerceptionConfig> {
+class Perception : public TunableComponent<PerceptionState, perception::PerceptionConfig>, public RobotJudge {
  public:
   Perception(Wiring& wiring, const Setup& setup);
   void step(const Tick& tick) override;
+  [[nodiscard]] CheckVerdict judge_robot() const override { return perception::judge_view(robot_); }
 
  private:
   /// The topics of the percepts of an image.

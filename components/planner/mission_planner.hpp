@@ -196,8 +196,8 @@ class MissionPlanner {
   /// Whether an obstacle of the map is so near to the arms of the U that the robot must back off first, and no line is
   /// in view that would lead it on.
   [[nodiscard]] bool caught(const PlannerInputs& inputs) const;
-  /// Whether enough images have shown the zone of the wanted colour, and the map knows it. Navigation refuses to drop an
-  /// object on a zone that the map does not know yet.
+  /// Whether enough images have shown the zone of the wanted colour, and the map knows it. Navigation refuses to drop
+  /// an object on a zone that the map does not know yet.
   [[nodiscard]] bool zone_found(const PlannerInputs& inputs) const;
   /// Whether no obstacle of the map stands in the straight way of the held object to its zone. True if the map does not
   /// have them.

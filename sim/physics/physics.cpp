@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cereal/types/string.hpp>
+#include <iterator>
 #include <span>
 #include <string>
 
@@ -96,7 +97,9 @@ std::vector<DemandedObject> Physics::demanded_objects(const std::vector<std::uin
 }
 
 CheckVerdict Physics::judge_scene() const {
-  return {{}, find_obstacles_on_line(world_.scenario(), world_.robot().module_radius_m)};
+  CheckVerdict verdict{{}, find_obstacles_on_line(world_.scenario(), world_.robot().module_radius_m)};
+  std::ranges::move(find_turns_back(world_.scenario()), std::back_inserter(verdict.warnings));
+  return verdict;
 }
 
 std::string Physics::save() const { return save_bytes(world_.save(), sensors_, perturbations_, gate_, scene_written_); }

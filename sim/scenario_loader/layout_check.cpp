@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace constrictor {
@@ -126,6 +127,43 @@ std::vector<std::string> find_obstacles_on_line(const Scenario& scenario, double
     }
   }
   return found;
+}
+
+std::vector<std::string> find_turns_back(const Scenario& scenario) {
+  constexpr double kApart_m = 1.5;  // with 1.6 m, six of six missions followed the line; with 1.2 m, four
+  constexpr double kOpposite_rad = 2.8;
+  constexpr double kBend_m = 0.8, kBend_rad = 1.95;  // 120 degrees within 0.63 m: seven of eight; within 0.84 m: all
+  const auto& line = scenario.line_m;
+  if (line.size() < 3) return {};
+  std::vector<double> along_m{0.0};
+  std::vector<Vector2d> direction;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const Vector2d step = line[i] - line[i - 1];
+    along_m.push_back(along_m.back() + step.norm());
+    direction.push_back(step.normalized());
+  }
+  double nearest_m = kApart_m, from_m = 0.0, to_m = 0.0;
+  for (std::size_t i = 0; i < direction.size(); ++i) {
+    for (std::size_t j = i + 1; j < direction.size(); ++j) {
+      const double turn_rad = std::acos(std::clamp(direction[i].dot(direction[j]), -1.0, 1.0));
+      if (turn_rad > kBend_rad && along_m[j] - along_m[i] < kBend_m) {
+        return {
+            fmt::format("line.segments: the line turns by more than {:.0f} degrees within {:.1f} m of its length, "
+                        "{:.2f} m from its beginning: the robot may lose it there",
+                        kBend_rad * 180.0 / std::numbers::pi, kBend_m, along_m[i])};
+      }
+      const double apart_m = (line[i] - line[j]).norm();
+      if (turn_rad < kOpposite_rad || apart_m >= nearest_m) continue;
+      nearest_m = apart_m;
+      from_m = along_m[i];
+      to_m = along_m[j];
+    }
+  }
+  if (nearest_m >= kApart_m) return {};
+  return {
+      fmt::format("line.segments: the line runs back beside itself, {:.2f} m apart ({:.2f} m and {:.2f} m from its "
+                  "beginning), accepted {} m or more: the robot may lose it in the bend, or follow it the wrong way",
+                  nearest_m, from_m, to_m, kApart_m)};
 }
 
 }  // namespace constrictor

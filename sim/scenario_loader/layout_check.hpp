@@ -21,4 +21,8 @@ inline constexpr double kDrawnBodyHalfWidth_m = 0.06;
 /// A text for each obstacle that leaves a robot of this half width no room to move along the line.
 [[nodiscard]] std::vector<std::string> find_obstacles_on_line(const Scenario& scenario, double body_half_width_m);
 
+/// A text if the line turns back so sharply, or runs back so near to itself, that the robot may lose it or take one
+/// part for the other; otherwise none. README.md ("Lines that turn back") has the measurements behind the bounds.
+[[nodiscard]] std::vector<std::string> find_turns_back(const Scenario& scenario);
+
 }  // namespace constrictor

@@ -1,11 +1,11 @@
-// What `--check` asks components about the robot, to find out before the start whether it can move.
+// What `--check` asks components about the robot, to find out before the start whether it suits the mission.
 #pragma once
 
 #include "component/check_verdict.hpp"
 
 namespace constrictor {
 
-/// A component that knows which robots it can move.
+/// A component that knows which robots it can deal with.
 class RobotJudge {
  public:
   virtual ~RobotJudge() = default;

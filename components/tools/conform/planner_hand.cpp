@@ -32,25 +32,33 @@ void PlannerHand::see(std::uint8_t colour, std::uint8_t kind, double range_m) {
   blob.u_min = 150, blob.u_max = 170, blob.v_min = 100, blob.v_max = 140;
 }
 
-void PlannerHand::map_on_zone(std::uint8_t colour) {
-  const double x_m = pose_.x_m + 0.5 * std::cos(pose_.yaw_rad), y_m = pose_.y_m + 0.5 * std::sin(pose_.yaw_rad);
+std::size_t PlannerHand::map_zone(std::uint8_t colour, double ahead_m) {
+  const double x_m = pose_.x_m + ahead_m * std::cos(pose_.yaw_rad), y_m = pose_.y_m + ahead_m * std::sin(pose_.yaw_rad);
   const auto handle = static_cast<std::uint16_t>(2 * colour + 1);
-  int zone = 0;
+  std::size_t zone = 0;  // each zone is followed by its object
   while (zone < map_.object_count && map_.objects[zone].handle != handle) zone += 2;
-  map_.object_count = static_cast<std::uint16_t>(std::max<int>(map_.object_count, zone + 2));
+  map_.object_count = static_cast<std::uint16_t>(std::max<std::size_t>(map_.object_count, zone + 1));
   map_.objects[zone] = {handle, colour, msg::kBlobZone, x_m, y_m, 0.4, kNaN, 0.03, false, false, port_.tick(), 0.01};
-  map_.objects[zone + 1] = {static_cast<std::uint16_t>(handle + 1),
-                            colour,
-                            msg::kBlobObject,
-                            x_m + 0.05,
-                            y_m,
-                            0.08,
-                            0.15,
-                            0.03,
-                            false,
-                            false,
-                            port_.tick(),
-                            1.0};
+  return zone;
+}
+
+void PlannerHand::map_on_zone(std::uint8_t colour) {
+  constexpr double kAhead_m = 0.5;
+  const std::size_t index = map_zone(colour, kAhead_m);
+  const msg::MapObject& zone = map_.objects[index];
+  map_.object_count = static_cast<std::uint16_t>(std::max<std::size_t>(map_.object_count, index + 2));
+  map_.objects[index + 1] = {static_cast<std::uint16_t>(zone.handle + 1),
+                             colour,
+                             msg::kBlobObject,
+                             zone.x_m + 0.05,
+                             zone.y_m,
+                             0.08,
+                             0.15,
+                             0.03,
+                             false,
+                             false,
+                             port_.tick(),
+                             1.0};
 }
 
 void PlannerHand::report(std::uint8_t event, std::uint8_t goal_state, std::uint16_t handle, std::int64_t other_goal) {

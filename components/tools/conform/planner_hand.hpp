@@ -25,6 +25,8 @@ class PlannerHand {
   void see_line(bool visible) { sees_line_ = visible; }
   void see(std::uint8_t colour, std::uint8_t kind, double range_m);
   void see_no_objects() { objects_.blob_count = 0; }
+  /// The map knows the zone of this colour, straight ahead. Returns its index in the map.
+  std::size_t map_zone(std::uint8_t colour, double ahead_m);
   /// The map shows an object in the middle of the zone of its colour.
   void map_on_zone(std::uint8_t colour);
 

@@ -106,12 +106,13 @@ bool PlannerConformance::check_delivery(std::size_t index) {
                   "request follow_line, towards the zones, when the body holds the object");
   if (!carries) return false;
   hand_->run(profile_.way_s);
+  hand_->map_zone(colour, kZone_m);
   hand_->see(colour, msg::kBlobZone, kZone_m);
   const bool drops =
       starts({msg::kTaskDrop}, profile_.decide_s) && hand_->newest()->parameters.drop_zone_colour == colour;
   if (first)
     report_.judge("drop", !drops, newest(),
-                  "request drop with the colour of the object when some images show the zone");
+                  "request drop with the colour of the object when some images show the zone and the map has it");
   if (!drops) return false;
   hand_->run(1.0);
   hand_->carry(false);

@@ -98,7 +98,8 @@ class PlannerTest : public ::testing::Test {
   void see_zone(std::uint8_t colour, double range_m) {
     see(colour, msg::kBlobZone, range_m);
     if (zone_of(map_, colour)) return;
-    const double x_m = pose_.x_m + range_m * std::cos(pose_.yaw_rad), y_m = pose_.y_m + range_m * std::sin(pose_.yaw_rad);
+    const double x_m = pose_.x_m + range_m * std::cos(pose_.yaw_rad),
+                 y_m = pose_.y_m + range_m * std::sin(pose_.yaw_rad);
     map_.objects[map_.object_count++] = {1, colour, msg::kBlobZone, x_m, y_m, 0.4, 0.0, 0.03, false, false, tick_, 0.0};
   }
   void see_nothing() {

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
+#include "sim/scenario_loader/line_path.hpp"
+
 namespace constrictor {
 namespace {
 
@@ -75,6 +79,26 @@ TEST(LayoutCheck, FindsObstaclesOnTheLine) {
                                      "follow the line there"});
   EXPECT_EQ(on_line({0.0, 5.0}, {0.08, 1.0}).size(), 1U) << "the line passes 0.03 m beside the peg";
   EXPECT_EQ(on_line({0.0, 4.0}, {0.0, 0.0}).size(), 2U);
+}
+
+// The radii and angles were measured (README.md of scenario_loader, "Lines that turn back").
+TEST(LayoutCheck, ALineThatTurnsBackIsFound) {
+  const auto bend = [](double radius_m, double degrees) {
+    const double angle_rad = degrees * std::numbers::pi / 180.0;
+    Scenario scenario;
+    scenario.line_m =
+        make_line_path({}, {{2.0, 0.0}, {radius_m * angle_rad, 1.0 / radius_m}, {2.0, 0.0}}, kMostLinePoints).points_m;
+    const std::vector<std::string> texts = find_turns_back(scenario);
+    if (texts.empty()) return "accepted";
+    return texts[0].find("beside itself") != std::string::npos ? "beside itself" : "sharp";
+  };
+  EXPECT_STREQ(bend(0.8, 180.0), "accepted");
+  EXPECT_STREQ(bend(0.6, 180.0), "beside itself");
+  EXPECT_STREQ(bend(0.2, 180.0), "sharp");
+  EXPECT_STREQ(bend(0.3, 135.0), "sharp");
+  EXPECT_STREQ(bend(0.6, 135.0), "accepted");
+  EXPECT_STREQ(bend(0.2, 90.0), "accepted");
+  EXPECT_EQ(find_turns_back(Scenario{}), std::vector<std::string>{}) << "there is no line";
 }
 
 }  // namespace
