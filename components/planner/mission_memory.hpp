@@ -34,6 +34,17 @@ struct PlacedObject {
 
 using PlacedObjects = std::vector<PlacedObject>;
 
+/// Where images have shown a zone to a robot with an object, until the map has the zone.
+struct ZoneGlimpse {
+  std::uint8_t colour = msg::kColourUnknown;  ///< kColourUnknown: none was seen
+  double x_m = 0.0, y_m = 0.0;                ///< about its centre, in M
+  double seen_s = 0.0;                        ///< active time of the newest of these images
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive(colour, x_m, y_m, seen_s);
+  }
+};
+
 /// The whole state of the planner.
 struct MissionMemory {
   MissionState state = MissionState::kSearchLineOrObject;
@@ -69,6 +80,7 @@ struct MissionMemory {
   std::uint16_t object_handle = 0;  ///< handle of the object that was reached or pregrasped; 0: unknown
   std::uint16_t object_images = 0;  ///< consecutive images with the wanted object
   std::uint16_t zone_images = 0;
+  ZoneGlimpse zone_glimpse;
   std::uint16_t line_images = 0;
   std::uint16_t searches = 0;                    ///< requests of the present search so far; selects the next move
   double searched_s = 0.0;                       ///< time of the newest one
@@ -95,11 +107,11 @@ struct MissionMemory {
   void serialize(Archive& archive) {
     archive(state, requested, direction_known, suspended, stopped, last_s, active_s, entered_s, requested_s,
             contradiction_s, line_ended_s, zone_seen_s, goals, object_index, delivered, recoveries, object_handle,
-            object_images, zone_images, line_images, searches, searched_s, search_task, search_by_memory, direction,
-            trail, reason, standstill, sweep, vain_looks, steps_back, step_backs, backed_off, aside, second_pass,
-            attempts, dropped, dropped_handle, newest_handle, released_tick, placed, displaced, hindrance, suspended_s,
-            unseen_s, blind, refused_sequence, refusals, wrong_way, rechecked, turned_back_s, newest_carried,
-            vain_turns);
+            object_images, zone_images, zone_glimpse, line_images, searches, searched_s, search_task, search_by_memory,
+            direction, trail, reason, standstill, sweep, vain_looks, steps_back, step_backs, backed_off, aside,
+            second_pass, attempts, dropped, dropped_handle, newest_handle, released_tick, placed, displaced, hindrance,
+            suspended_s, unseen_s, blind, refused_sequence, refusals, wrong_way, rechecked, turned_back_s,
+            newest_carried, vain_turns);
   }
 };
 

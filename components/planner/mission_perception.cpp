@@ -44,6 +44,7 @@ void MissionPlanner::count_percepts(const PlannerInputs& inputs) {
   const auto* any_zone = nearest(*inputs.objects, [](const msg::Blob& blob) { return blob.kind == msg::kBlobZone; });
   count(memory_.object_images, object && object->range_m <= config_.object_range_m);
   count(memory_.zone_images, zone && zone->range_m <= config_.zone_range_m);
+  if (holding() && memory_.zone_images >= config_.confirm_images) note_zone(*zone, inputs);
   count(memory_.line_images, inputs.line->visible && inputs.line->colour == config_.line_colour);
   if (any_zone && any_zone->range_m < config_.end_zone_m) memory_.zone_seen_s = memory_.active_s;
   if (inputs.pose && outbound() && inputs.line->colour == config_.line_colour)
@@ -117,17 +118,35 @@ const msg::MapObject* MissionPlanner::wanted_landmark(const PlannerInputs& input
   return best;
 }
 
+// The map does not take a zone that the border of the image cuts: it does not know where its centre is. The robot then
+// turns and drives towards the zone until it is whole in view.
+void MissionPlanner::note_zone(const msg::Blob& zone, const PlannerInputs& inputs) {
+  if (!inputs.pose) return;
+  const double heading_rad = inputs.pose->yaw_rad + zone.bearing_rad, centre_m = zone.range_m + config_.zone_radius_m;
+  memory_.zone_glimpse = {zone.colour, inputs.pose->x_m + centre_m * std::cos(heading_rad),
+                          inputs.pose->y_m + centre_m * std::sin(heading_rad), memory_.active_s};
+}
+
+std::optional<Eigen::Vector2d> MissionPlanner::wanted_place(const PlannerInputs& inputs) const {
+  constexpr double kForgotten_s = 40.0;  // what the map still does not have then is no zone
+  if (const msg::MapObject* landmark = wanted_landmark(inputs)) return Eigen::Vector2d(landmark->x_m, landmark->y_m);
+  const ZoneGlimpse& glimpse = memory_.zone_glimpse;
+  const bool wanted = holding() && colour() != msg::kColourUnknown && glimpse.colour == colour();
+  if (!wanted || memory_.active_s - glimpse.seen_s > kForgotten_s) return std::nullopt;
+  return Eigen::Vector2d(glimpse.x_m, glimpse.y_m);
+}
+
 double MissionPlanner::remembered_m(const PlannerInputs& inputs) const {
-  const msg::MapObject* landmark = wanted_landmark(inputs);
-  if (!landmark) return std::numeric_limits<double>::infinity();
-  return std::hypot(landmark->x_m - inputs.pose->x_m, landmark->y_m - inputs.pose->y_m);
+  const auto place = wanted_place(inputs);
+  if (!place || !inputs.pose) return std::numeric_limits<double>::infinity();
+  return std::hypot(place->x() - inputs.pose->x_m, place->y() - inputs.pose->y_m);
 }
 
 std::optional<double> MissionPlanner::wanted_turn_rad(const PlannerInputs& inputs) const {
   if (!inputs.pose) return std::nullopt;
   const auto& pose = *inputs.pose;
-  if (const msg::MapObject* landmark = searches() ? wanted_landmark(inputs) : nullptr) {
-    const double x_m = landmark->x_m - pose.x_m, y_m = landmark->y_m - pose.y_m;
+  if (const auto place = searches() ? wanted_place(inputs) : std::nullopt) {
+    const double x_m = place->x() - pose.x_m, y_m = place->y() - pose.y_m;
     const double distance_m = std::hypot(x_m, y_m);
     if (distance_m > 0.3 && (distance_m < config_.remembered_range_m || sweeps() || memory_.trail.empty()))
       return wrap_angle(std::atan2(y_m, x_m) - course_rad(pose));

@@ -3,6 +3,7 @@
 // scenario. It contains no DDS code.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -164,6 +165,11 @@ class MissionPlanner {
   /// The nearest landmark of the zone for a robot with an object, otherwise of the object, that is not delivered yet;
   /// null: the map has none.
   [[nodiscard]] const msg::MapObject* wanted_landmark(const PlannerInputs& inputs) const;
+  /// [m] in M: the place of wanted_landmark(); while the map lacks the zone, where images have lately shown it. Empty:
+  /// neither is known.
+  [[nodiscard]] std::optional<Eigen::Vector2d> wanted_place(const PlannerInputs& inputs) const;
+  /// Remembers where images show the zone that the map does not have yet.
+  void note_zone(const msg::Blob& zone, const PlannerInputs& inputs);
   /// Whether the robot faces the direction along the line that the state wants. True if the direction is unknown.
   [[nodiscard]] bool leads_wanted_way(const PlannerInputs& inputs) const;
   /// Whether the visible line leads a robot without an object over new ground.
@@ -172,7 +178,7 @@ class MissionPlanner {
   [[nodiscard]] double course_rad(const msg::RobotPose& pose) const {
     return holding() ? pose.yaw_rad : pose.body_yaw_rad;
   }
-  /// [m] from the head to wanted_landmark(); infinite if the map has none.
+  /// [m] from the head to wanted_place(); infinite if there is none.
   [[nodiscard]] double remembered_m(const PlannerInputs& inputs) const;
   /// [rad] turn, positive left, after which the course leads to the remembered object or zone, or along the line in the
   /// wanted direction; empty: none of them is remembered.

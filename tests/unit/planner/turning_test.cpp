@@ -107,6 +107,26 @@ TEST_F(PlannerTest, FollowsTheLineUntilTheMapKnowsTheZone) {
   EXPECT_EQ(memory_.state, kDrop);
 }
 
+// The border of the image cut the zone as long as the robot turned beside it, and the map never got it: the robot drove
+// round it for four minutes.
+TEST_F(PlannerTest, SearchesWhereImagesHaveShownTheZone) {
+  find_line();
+  fetch(msg::kColourGreen);
+  carry();
+  see(msg::kColourGreen, msg::kBlobZone, 1.2);
+  objects_.blobs[0].bearing_rad = 0.7;
+  steps(4);
+  see_nothing();
+  succeed(msg::kEventEndOfLine);
+  ASSERT_EQ(memory_.state, kSearchLine);
+  steps(4);
+  EXPECT_TRUE(memory_.search_by_memory);
+  EXPECT_EQ(last_.task, msg::kTaskExplore);
+  EXPECT_EQ(last_.parameters.direction, msg::kDirectionLeft);
+  for (double s = 0.0; s < 45.0; s += 0.02) step();
+  EXPECT_FALSE(memory_.search_by_memory) << "it was no zone";
+}
+
 // An object that had fallen over was taken for a second zone. The robot dropped the object there, and the mission was
 // called a success.
 TEST_F(PlannerTest, WhatLooksLikeASecondZoneIsNotOne) {
