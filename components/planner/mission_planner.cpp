@@ -222,6 +222,12 @@ std::optional<MissionState> MissionPlanner::next(const PlannerInputs& inputs) {
 
 std::optional<MissionState> MissionPlanner::next_by_event(const msg::TaskEvent& event, const PlannerInputs& inputs) {
   if (event.event == msg::kEventEndOfLine) return end_of_line(inputs);
+  // Of two objects of one colour, the nearer one may be reached although the other one was meant.
+  const msg::MapObject* reached = event.event == msg::kEventObjectReached && inputs.map
+                                      ? object_of_handle(*inputs.map, event.object_handle)
+                                      : nullptr;
+  if (reached && has_delivered_twin() && is_placed(*reached, inputs))
+    return recover(kSearchObject, "a delivered object of its colour was reached instead");
   if (event.event == msg::kEventObjectReached || event.event == msg::kEventObjectPregrasped)
     memory_.object_handle = event.object_handle;
   for (const auto& loss : row_of(memory_.state).losses) {

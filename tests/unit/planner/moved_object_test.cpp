@@ -256,6 +256,26 @@ TEST_F(TwinsTest, TheSearchForTheSecondObjectIgnoresTheFirstOnItsZone) {
   EXPECT_EQ(last_.parameters.object_handle, 3) << "not the one that is delivered";
 }
 
+// The second object was lost on the way. The robot then took the first one off its zone under the new handle that the
+// map had given it, dropped it there again, and believed that both were delivered.
+TEST_F(TwinsTest, ADeliveredObjectThatIsReachedInsteadOfTheOtherStays) {
+  deliver_first();
+  map_dropped(msg::kColourGreen, 0.1);
+  add_twin(3, pose_.x_m + 2.0, 0.05);
+  map_.objects[1].handle = 5;
+  for (const std::uint16_t handle : {std::uint16_t{5}, std::uint16_t{3}}) {
+    memory_.state = kTrackObject;
+    memory_.requested = false;
+    see_nothing();
+    step();
+    auto reached = event(msg::kEventObjectReached, msg::kGoalSucceeded);
+    reached.object_handle = handle;
+    step({reached});
+    EXPECT_EQ(memory_.state == kPregrasp, handle == 3) << name_of(memory_.state);
+  }
+  EXPECT_EQ(memory_.delivered, 1u);
+}
+
 // The robot pushed the first object off the zone while it carried the second one there.
 TEST_F(TwinsTest, TheFirstOneIsLookedAtOnceMoreIfItWasTouched) {
   for (const double offset_m : {0.2, 0.7}) {
