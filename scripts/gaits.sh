@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures control's gaits in the simulated world and draws them.
-# Usage: scripts/gaits.sh [--robot FILE] [--output DIR]
-#   --robot FILE    robot file (default: mamba)
+# Usage: scripts/gaits.sh [--robot ROBOT] [--output DIR]
+#   --robot ROBOT   robot file, or the name of a shipped robot (default: mamba)
 #   --output DIR    where gaits.png and gaits.json are written (default: build/gaits)
 # Example: scripts/gaits.sh --output /tmp/gaits
 # Takes half a minute.

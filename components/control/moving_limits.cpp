@@ -63,10 +63,19 @@ double wave_rate_rad_s(const RobotModel& robot, const ControlConfig& config) {
   return 2.0 * std::numbers::pi * config.most_hz * swing_rad;
 }
 
+/// Whether the odometry of guidance holds for a body that this method moves (README.md, "Methods").
+bool keeps_pose(const std::string& method) { return method == "undulation" || method == "sliding_mode"; }
+
 }  // namespace
 
 CheckVerdict judge_joints(const RobotModel& robot, const ControlConfig& config) {
   CheckVerdict verdict;
+  if (const std::string& method = drive_methods()[config.travel.method]; !keeps_pose(method)) {
+    verdict.warnings.push_back(
+        fmt::format("control: motion.travel.method: found {}, missions succeed with undulation and sliding_mode: the "
+                    "robot loses its pose with other methods",
+                    method));
+  }
   if (robot.yaw_joints().empty() || config.travel.method != 0) return verdict;  // measured for undulation
   const double share = link_share(robot);                                       // shorter links bend less
   const double least_rad = share * kLeastRange_rad, enough_rad = share * kEnoughRange_rad;

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """An external planner: follows a line to its end, and looks for the line again when it is lost.
 
-    constrictor run line --pace 2x          # in another terminal
+    constrictor run long_line --pace 2x     # in another terminal
     python3 line_planner.py --colour blue
 
 It takes authority from the built-in planner, which goes on when this program ends.

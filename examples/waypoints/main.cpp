@@ -31,7 +31,9 @@ int main(int argc, char** argv) {
     msg::Request request = constrictor::task_request(msg::kTaskFollowPath);
     for (const std::string& point : points) {
       const auto i = request.path.point_count++;
-      if (std::sscanf(point.c_str(), "%lf,%lf", &request.path.x_m[i], &request.path.y_m[i]) != 2)
+      int read = -1;  // characters of the two numbers; what follows them is no part of a point
+      std::sscanf(point.c_str(), "%lf,%lf%n", &request.path.x_m[i], &request.path.y_m[i], &read);
+      if (read != static_cast<int>(point.size()))
         throw std::runtime_error("--path: found '" + point + "', accepted X,Y");
     }
     const std::uint64_t goal = client.start_goal(request);  // takes authority; throws if the task is refused

@@ -9,6 +9,7 @@ namespace constrictor {
 class RobotJudge {
  public:
   virtual ~RobotJudge() = default;
+  /// A text about the configuration of the component begins with its name and a colon.
   [[nodiscard]] virtual CheckVerdict judge_robot() const = 0;
 };
 

@@ -162,7 +162,11 @@ Findings check_components(const HostOptions& options, const std::vector<Componen
         hello.timing.latency = std::max(hello.timing.latency, latency->second);
       hellos.push_back(std::move(hello));
       if (const auto* judge = dynamic_cast<const RobotJudge*>(built.component.get())) {
-        const auto line = [&](const std::string& what) { return setup.robot_file.string() + ": " + what; };
+        const std::string own = factory.name + ": ";  // before what is about the configuration of the component
+        const auto line = [&](const std::string& what) {
+          return what.starts_with(own) ? setup.config_file.string() + ": " + what.substr(own.size())
+                                       : setup.robot_file.string() + ": " + what;
+        };
         add(judge->judge_robot(), line, findings);
       }
       if (const auto* judge = dynamic_cast<const SceneJudge*>(built.component.get())) {

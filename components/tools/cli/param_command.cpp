@@ -68,7 +68,7 @@ void report_silent(const ParameterView& view) {
 }
 
 int list_parameters(const ParamOptions& options) {
-  const dds::Domain domain(find_domain(options.view.domain));
+  const dds::Domain domain(join_run(options.view.domain).domain);
   const ParameterView view = read_parameters(domain.participant());
   Json json = Json::array();
   bool begins = false;  // whether any name begins with the prefix
@@ -141,7 +141,7 @@ Refused no_such_parameter(const std::string& name, const ParameterView& view) {
 }
 
 int get_parameter(const ParamOptions& options) {
-  const dds::Domain domain(find_domain(options.view.domain));
+  const dds::Domain domain(join_run(options.view.domain).domain);
   const ParameterView view = read_parameters(domain.participant());
   const auto found = view.parameters.find(options.name);
   if (found == view.parameters.end()) {
@@ -162,7 +162,7 @@ int get_parameter(const ParamOptions& options) {
 /// Sets the parameters one after the other, until one is refused.
 int set_all(const ParamOptions& options, const std::vector<ParameterValue>& values) {
   const std::size_t count = values.size();
-  RequestClient client(find_domain(options.view.domain),
+  RequestClient client(join_run(options.view.domain).domain,
                        operator_options(unique_source("param"), 0ms, /*detached=*/true));
   ParameterSetter setter(client);
   std::string reason;
@@ -213,7 +213,8 @@ int set_parameter(const ParamOptions& options) {
       // Without a run there are no names, and the value is as wrong as any other text.
       const bool no_run = !options.view.domain && live_runs().empty();
       if (!view)
-        view = no_run ? ParameterView{} : read_parameters(dds::Domain(find_domain(options.view.domain)).participant());
+        view =
+            no_run ? ParameterView{} : read_parameters(dds::Domain(join_run(options.view.domain).domain).participant());
       const auto found = view->parameters.find(name);
       if (found == view->parameters.end() && !view->parameters.empty() && view->silent.empty())
         throw no_such_parameter(name, *view);
@@ -254,7 +255,7 @@ int load(const ParamOptions& options) {
     throw ConfigurationError(fmt::format("{}: cannot be read: {}", options.file, ::strerrordesc_np(errno)));
   std::vector<ParameterValue> values;
   {
-    const dds::Domain domain(find_domain(options.view.domain));
+    const dds::Domain domain(join_run(options.view.domain).domain);
     const ParameterView view = read_parameters(domain.participant());
     report_silent(view);
     values = read_parameter_file(text, options.file, view, is_in_configuration);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "bench/gaits/gait_trial.hpp"
 #include "bench/measure_main.hpp"
@@ -143,12 +144,18 @@ void draw(const std::filesystem::path& file, const std::vector<Row>& rows, const
 
 void measure(const std::filesystem::path& robot_file, const std::filesystem::path& output) {
   const RobotModel robot = load_robot(robot_file);
-  const std::vector<Row> all = rows();
+  std::vector<Row> measured;
   std::vector<Course> courses;
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   fmt::print("| gait | ground | frequency | speed | cost of transport | largest torque |\n|---|---|---|---|---|---|\n");
-  for (const Row& row : all) {
-    const Course course = run(robot, row.trial);
+  for (const Row& row : rows()) {
+    Course course;
+    try {
+      course = run(robot, row.trial);
+    } catch (const std::invalid_argument&) {
+      fmt::print("| `{}` | {} | | this robot cannot | | |\n", row.trial.method, row.ground);
+      continue;
+    }
     const bool moves = speed_text(course) != "stands";
     fmt::print("| `{}` | {} | {:g} Hz | {} | {} | {:.1f} Nm |\n", row.trial.method, row.ground, row.trial.frequency_hz,
                speed_text(course), moves ? fmt::format("{:.2f}", course.transport) : "", course.largest_torque_nm);
@@ -161,10 +168,12 @@ void measure(const std::filesystem::path& robot_file, const std::filesystem::pat
                     {"turn_rad_s", course.turn_rad_s},
                     {"cost_of_transport", course.transport},
                     {"largest_torque_nm", course.largest_torque_nm}});
+    measured.push_back(row);
     courses.push_back(course);
   }
+  if (courses.empty()) throw std::runtime_error("no gait suits the robot " + robot.name);
   std::ofstream(output / "gaits.json") << json.dump(2) << '\n';
-  draw(output / "gaits.png", all, courses);
+  draw(output / "gaits.png", measured, courses);
   fmt::print("\ngaits: {} and {}\n", (output / "gaits.png").string(), (output / "gaits.json").string());
 }
 

@@ -33,6 +33,16 @@ TEST(MovingLimits, EachShippedRobotMoves) {
   }
 }
 
+TEST(MovingLimits, AMethodWithWhichTheRobotLosesItsPoseIsWarnedOf) {
+  for (std::size_t i = 0; i < drive_methods().size(); ++i) {
+    ControlConfig config = control_fitted_to(mamba(), {});
+    config.travel.method = static_cast<std::uint8_t>(i);
+    const std::string& method = drive_methods()[i];
+    const bool keeps_pose = method == "undulation" || method == "sliding_mode";
+    EXPECT_EQ(kind_of(mamba(), config), keeps_pose ? "accepted" : "warned") << method;
+  }
+}
+
 TEST(MovingLimits, AreThoseThatWereMeasured) {
   struct Case {
     double JointModel::*member;
@@ -91,7 +101,8 @@ TEST(MovingLimits, FollowTheMassAndTheWave) {
   EXPECT_EQ(kind_of(lame), "accepted") << "the other joints move the robot";
   ControlConfig rolling;
   rolling.travel.method = 2;
-  EXPECT_EQ(kind_of(with(&JointModel::max_rad, 0.1), rolling), "accepted") << "only undulation was measured";
+  EXPECT_EQ(judge_joints(with(&JointModel::max_rad, 0.1), rolling).refusals.size(), 0u)
+      << "only undulation was measured";
 }
 
 }  // namespace
