@@ -111,7 +111,7 @@ class Grasp : public StatefulTask<GraspState> {
   }
 
   /// Whether the body has driven farther than the whole of it can need to bring its base to the object. In 116 grasps
-  /// the longest seat took 1.0 lengths of the body. Without this bound, a robot that had missed its object drove on for
+  /// the longest seat took 1.1 lengths of the body. Without this bound, a robot that had missed its object drove on for
   /// 6 m, and did not find it again for a minute.
   [[nodiscard]] bool passed(const TaskInput& input) const {
     constexpr double kLengths = 1.25;
