@@ -49,7 +49,7 @@ TEST_F(Determinism, LatenciesOfAManifestBelongToTheRunAndNotToItsProcesses) {
   };
   const std::string expected = run("one", with({"--in-process"}));
   EXPECT_NE(run("near", {"--in-process"}), expected) << "percepts that come later must change the run";
-  Process process = start("many", with({"--pace", "2x"}));
+  Process process = start("many", with({"--pace", "1x"}));  // time enough for four kills on a busy computer, too
   RunTicks ticks(process);
   for (const std::string victim : {"perception", "planner", "report", "guidance"}) {
     const pid_t pid = running(victim);
