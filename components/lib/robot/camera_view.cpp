@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace constrictor {
@@ -11,8 +13,22 @@ namespace {
 
 constexpr double kLeastAboveGround_m = 0.02;
 constexpr double kLeastGround_rad = 0.05;  // angle below the horizon that must be in view
+constexpr std::int64_t kLeastWidth = 32;   // [pixel] perception refuses smaller images
+constexpr std::int64_t kLeastHeight = 24;  // [pixel]
+constexpr std::int64_t kMostPixels = 4096;
 
 }  // namespace
+
+void read_camera_image(Configuration& camera, bool inherits, CameraModel& model) {
+  const auto pixels = [&](const char* key, std::int64_t least, int& value) {
+    const std::optional<std::int64_t> fallback = inherits ? std::optional<std::int64_t>(value) : std::nullopt;
+    value = static_cast<int>(camera.integer(key, least, kMostPixels, fallback));
+  };
+  pixels("width", kLeastWidth, model.width);
+  pixels("height", kLeastHeight, model.height);
+  const std::optional<double> fov_rad = inherits ? std::optional(model.horizontal_fov_rad) : std::nullopt;
+  model.horizontal_fov_rad = camera.number("horizontal_fov_rad", {0.1, 2.8}, fov_rad);
+}
 
 void read_camera_place(Configuration& camera, const RobotModel& robot, CameraModel& model) {
   const std::vector<double> position = camera.numbers("position_m", {-1.0, 1.0}, 3, 3);

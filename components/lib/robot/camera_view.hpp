@@ -6,6 +6,10 @@
 
 namespace constrictor {
 
+/// Reads the keys `width`, `height` and `horizontal_fov_rad` of a camera. `inherits`: a missing key leaves what `model`
+/// has; otherwise each is required. Throws ConfigurationError.
+void read_camera_image(Configuration& camera, bool inherits, CameraModel& model);
+
 /// Reads the key `position_m` of a camera. Refuses a place below the ground, and one inside the module, which would
 /// hide everything else. The modules have been read into `robot`. Throws ConfigurationError.
 void read_camera_place(Configuration& camera, const RobotModel& robot, CameraModel& model);

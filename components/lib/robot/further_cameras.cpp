@@ -12,8 +12,6 @@ namespace constrictor {
 namespace {
 
 constexpr std::size_t kMost = msg::kMaxCameras - 1;  // without the head's
-constexpr std::int64_t kLeastWidth = 32;             // [pixel] perception refuses smaller images
-constexpr std::int64_t kLeastHeight = 24;            // [pixel]
 
 std::string read_name(Configuration& camera, const std::vector<CameraModel>& before) {
   std::string name = camera.text("name");
@@ -30,9 +28,7 @@ CameraModel read_further_camera(Configuration camera, const RobotModel& robot, c
   model.name = read_name(camera, before);
   const auto last_module = static_cast<std::int64_t>(robot.module_count) - 1;
   model.module = static_cast<std::size_t>(camera.integer("module", 0, last_module, 0));
-  model.width = static_cast<int>(camera.integer("width", kLeastWidth, 4096, model.width));
-  model.height = static_cast<int>(camera.integer("height", kLeastHeight, 4096, model.height));
-  model.horizontal_fov_rad = camera.number("horizontal_fov_rad", {0.1, 2.8}, model.horizontal_fov_rad);
+  read_camera_image(camera, true, model);
   read_camera_place(camera, robot, model);
   model.yaw_rad = camera.number("yaw_rad", {-std::numbers::pi, std::numbers::pi}, 0.0);
   read_camera_tilt(camera, model);

@@ -41,9 +41,7 @@ JointModel read_joint(Configuration& joints) {
 
 CameraModel read_camera(Configuration camera, const RobotModel& robot) {
   CameraModel model;
-  model.width = static_cast<int>(camera.integer("width", 16, 4096));
-  model.height = static_cast<int>(camera.integer("height", 16, 4096));
-  model.horizontal_fov_rad = camera.number("horizontal_fov_rad", {0.1, 2.8});
+  read_camera_image(camera, false, model);
   read_camera_place(camera, robot, model);
   read_camera_tilt(camera, model);
   model.period_ticks = static_cast<int>(camera.integer("period_ticks", 1, 1000));

@@ -111,6 +111,8 @@ TEST(RobotModel, ErrorNamesTheMistake) {
             "joints.damping_nm_s_rad: found damping without stiffness_nm_rad, accepted 0 for a stiff joint");
   EXPECT_EQ(error_of_changed_file("max_torque_nm: 6.0", "backlash_rad: 0.01\n  max_torque_nm: 6.0"),
             "joints.backlash_rad: found backlash without stiffness_nm_rad, which is the stiffness of the gear");
+  EXPECT_EQ(error_of_changed_file("  width: 320", "  width: 31"),
+            "camera.width: found 31, accepted a whole number 32 to 4096");  // perception refuses smaller images
   EXPECT_EQ(error_of_changed_file("  tilt_rad: 0.3", "  tilt: 0.3"),
             "camera.tilt_rad: found nothing, accepted -1.5 to 1.5; line 30 has a key 'tilt': rename it if it is meant");
   EXPECT_EQ(error_of_changed_file("name: mamba", "name: mamba\ncolour: green").substr(0, 42),
