@@ -112,6 +112,7 @@ class Agent {
   std::string launcher_;                                 ///< that sent the last hello; another one continues the run
   std::string continued_;  ///< how a run is continued whose plant is here; empty: it is not
   bool keep_ = false;      ///< the run may be continued later
+  bool cleaned_up_ = false;
   bool prepared_ = false;
   bool collecting_ = false;
   bool greeted_ = false;  ///< the launcher has said hello on this connection, and which parts of the logs it has

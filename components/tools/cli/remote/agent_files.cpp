@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <stdexcept>
+#include <utility>
 
 #include "cli/remote/agent.hpp"
 #include "cli/run_record.hpp"
@@ -115,12 +116,19 @@ void Agent::start_over() {
 }
 
 void Agent::clean_up() {
+  // Once only: when the launcher knows that the agent has ended, an agent that it starts anew uses the same folder.
+  if (std::exchange(cleaned_up_, true)) return;
   kill_all(keep_);
   security_.reset();
   std::error_code ignored;
   const fs::path kept = kept_output(folder_);
   if (!keep_ && !kept.empty()) fs::remove_all(kept, ignored);
-  fs::remove_all(folder_, ignored);
+  // Under another name, so that nothing is removed of a folder that another agent makes meanwhile.
+  const fs::path leaving = folder_.string() + ".ended";
+  fs::remove_all(leaving, ignored);
+  std::error_code error;
+  fs::rename(folder_, leaving, error);
+  fs::remove_all(error ? folder_ : leaving, ignored);
   dds_ = {};
   claim_.reset();
 }
