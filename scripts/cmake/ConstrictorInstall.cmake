@@ -38,8 +38,10 @@ foreach(folder components sim components/tools)
   list(APPEND PROGRAMS ${found})
 endforeach()
 install(TARGETS ${PROGRAMS} RUNTIME DESTINATION ${LIBEXEC})
-install(TARGETS constrictor_figure_module LIBRARY DESTINATION ${LIBEXEC})  # loaded by programs that lie beside it
-add_custom_target(programs DEPENDS ${PROGRAMS} constrictor_figure_module)  # what is installed: no tests, no benchmarks
+# Modules are loaded by programs that lie beside them.
+install(TARGETS constrictor_figure_module constrictor_overview_module LIBRARY DESTINATION ${LIBEXEC})
+# What is installed: no tests, no benchmarks.
+add_custom_target(programs DEPENDS ${PROGRAMS} constrictor_figure_module constrictor_overview_module)
 if(TARGET constrictor_python)
   add_dependencies(programs constrictor_python)
 endif()

@@ -9,7 +9,7 @@
 #include "constrictor/reflect.hpp"
 #include "constrictor/sha256.hpp"
 #include "sim/figure/png.hpp"
-#include "sim/overview/overview_view.hpp"
+#include "sim/overview/lazy_view.hpp"
 #include "sim/report/files.hpp"
 
 namespace constrictor::report {
@@ -40,14 +40,14 @@ std::shared_ptr<const msg::WorldState> read_world(const std::filesystem::path& f
 
 void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<Moment>& moments,
                          const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m, LostFiles& lost) {
-  std::unique_ptr<OverviewView> view;  // made for the first picture, because this compiles shaders
+  std::unique_ptr<LazyView> view;  // made for the first picture, because this compiles shaders
   for (const Moment& moment : moments) {
     const MomentFiles files(folder, moment);
     const auto world = read_world(files.world);
     if (!world) continue;
-    if (!view) view = std::make_unique<OverviewView>(scene, OverviewConfig{}, head_camera_m);
+    if (!view) view = make_view_lazily(scene, head_camera_m);
     const std::vector<std::uint8_t>& rgb = view->draw(*world);
-    const std::string png = encode_png(view->camera().width, view->camera().height, rgb.data());
+    const std::string png = encode_png(view->width(), view->height(), rgb.data());
     lost.attempt([&] { replace_file(files.scene, png); });
   }
 }

@@ -22,7 +22,8 @@ void save_world(const std::filesystem::path& file, const msg::WorldState& world)
 /// Draws the picture of the scene (OverviewView with its default options) for each moment whose world state can be read
 /// and writes it into the snapshots of `folder`. A moment without a readable world state keeps the picture that it has:
 /// none, or the one that this process drew before it was killed and restarted. `head_camera_m`: [m] p_HC. A
-/// picture that cannot be written is noted in `lost`. Throws std::runtime_error if OpenGL fails.
+/// picture that cannot be written is noted in `lost`. Throws std::runtime_error if OpenGL fails, or if the
+/// module that draws is missing.
 void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<Moment>& moments,
                          const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m, LostFiles& lost);
 
