@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "perception/ground_colour.hpp"
@@ -13,6 +14,7 @@ namespace {
 constexpr int kGridColumns = 4, kGridRows = 8;  // [pixel] between the places at which glare is looked for
 constexpr int kBright = 195;                    // least value of all channels (of 255) in glare
 constexpr double kBrighter = 1.15;              // than the usual ground
+constexpr double kNoise_sd = 5.0;               // glare is brighter than the usual ground by so much of its noise, too
 constexpr double kLeastGlareShare = 0.003;      // of the ground in view
 constexpr double kLitShare = 0.6;    // of the ground is at most as bright as usual; more rarely lies in shadow
 constexpr double kAsBright = 0.9;    // as the usual ground: no paint is so bright in all channels without glare
@@ -30,6 +32,22 @@ struct UsualGround {
 
 int first_ground_row(const GroundCamera& camera, int u) {
   return std::max(camera.horizon_pixel(u) + kHorizonErrorPixels, 0);
+}
+
+/// Standard deviation of the ground's darkest channel, from the differences of places that lie beside each other:
+/// shadows and glare have few borders.
+double noise_sd(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels) {
+  constexpr double kMedianOfNormal = 0.6745;  // median of the absolute value, for a standard deviation of 1
+  std::vector<double> differences;
+  const auto unlabelled = [&](int v, int u) { return labels.image.at<std::uint8_t>(v, u) == msg::kColourUnknown; };
+  for (int u = kGridColumns / 2 + kGridColumns; u < rgb.cols; u += kGridColumns) {
+    for (int v = first_ground_row(camera, u); v < rgb.rows; v += kGridRows) {
+      if (!unlabelled(v, u) || !unlabelled(v, u - kGridColumns)) continue;
+      const std::uint8_t* pixel = rgb.ptr<std::uint8_t>(v) + 3 * u;
+      differences.push_back(std::abs(darkest_channel(pixel) - darkest_channel(pixel - 3 * kGridColumns)));
+    }
+  }
+  return differences.empty() ? 0.0 : median(differences) / (kMedianOfNormal * std::numbers::sqrt2);
 }
 
 UsualGround ground_under_glare(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels) {
@@ -53,7 +71,8 @@ UsualGround ground_under_glare(const cv::Mat& rgb, const GroundCamera& camera, c
   const auto usual =
       brightness.begin() + static_cast<std::ptrdiff_t>(kLitShare * static_cast<double>(brightness.size()));
   std::nth_element(brightness.begin(), usual, brightness.end());
-  const double least_bright = std::max<double>(kBright, kBrighter * *usual);
+  const double least_bright =
+      std::max({static_cast<double>(kBright), kBrighter * *usual, *usual + kNoise_sd * noise_sd(rgb, camera, labels)});
   const auto in_glare = std::count_if(
       bright.begin(), bright.end(), [&](const std::uint8_t* pixel) { return darkest_channel(pixel) >= least_bright; });
   if (static_cast<std::size_t>(in_glare) < least) return {};

@@ -117,5 +117,23 @@ TEST(GlarePercepts, BareGroundIsNoPercept) {
   });
 }
 
+// The bright pixels of a noisy image were taken for glare, and those beside them for pale colours: with the noise 0.2,
+// missions took three times as long.
+TEST(GlarePercepts, NoiseIsNoGlare) {
+  for (const double noise_sd : {0.1, 0.2, 0.3}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      SCOPED_TRACE("noise " + std::to_string(noise_sd) + ", seed " + std::to_string(seed));
+      testing::Scene scene;
+      scene.seed = seed;
+      scene.line = Arc{{-0.1, 0.0}, 0.0, 0.0};
+      scene.rounds = {Round{msg::kColourGreen, {0.9, 0.4}, 0.085, 0.15}};
+      const perception::Percepts percepts = look(scene, {{0.4, 0.3, 0.85}, 1.0, 0.45, noise_sd, {}});
+      EXPECT_TRUE(percepts.line.visible);
+      EXPECT_EQ(percepts.objects.blob_count, 1);
+      EXPECT_NE(find(percepts, msg::kColourGreen, msg::kBlobObject), nullptr);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace constrictor
