@@ -25,6 +25,11 @@ const msg::Blob* nearest(const msg::ObjectPercepts& percepts, Accept accept) {
   return best;
 }
 
+/// [m] in M: the point of the ground that lies `beyond_m` behind the near edge of a blob.
+Eigen::Vector2d place_of(const msg::Blob& blob, const msg::RobotPose& pose, double beyond_m = 0.0) {
+  return Eigen::Vector2d(pose.x_m, pose.y_m) + (blob.range_m + beyond_m) * along(pose.yaw_rad + blob.bearing_rad);
+}
+
 void count(std::uint16_t& images, bool seen) {
   images = seen ? static_cast<std::uint16_t>(std::min(images + 1, 1000)) : std::uint16_t{0};
 }
@@ -63,10 +68,8 @@ bool MissionPlanner::is_zone(const msg::Blob& blob, const PlannerInputs& inputs)
   const msg::MapObject* zone = inputs.map && inputs.pose ? zone_of(*inputs.map, blob.colour) : nullptr;
   if (!zone) return true;
   const double sd_m = std::sqrt(std::max(inputs.pose->covariance[0], inputs.pose->covariance[4]));
-  const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
-  const double x_m = inputs.pose->x_m + blob.range_m * std::cos(heading_rad);
-  const double y_m = inputs.pose->y_m + blob.range_m * std::sin(heading_rad);
-  return std::hypot(zone->x_m - x_m, zone->y_m - y_m) < kAnother_m + 3.0 * sd_m;
+  const Eigen::Vector2d place = place_of(blob, *inputs.pose);
+  return std::hypot(zone->x_m - place.x(), zone->y_m - place.y()) < kAnother_m + 3.0 * sd_m;
 }
 
 bool MissionPlanner::zone_found(const PlannerInputs& inputs) const {
@@ -76,9 +79,8 @@ bool MissionPlanner::zone_found(const PlannerInputs& inputs) const {
 // An object that stands on the zone of its colour, after one of this colour was dropped there, is not fetched again.
 bool MissionPlanner::is_delivered(const msg::Blob& blob, const PlannerInputs& inputs) const {
   if (!inputs.pose) return false;
-  const double heading_rad = inputs.pose->yaw_rad + blob.bearing_rad;
-  return is_delivered(blob.colour, inputs.pose->x_m + blob.range_m * std::cos(heading_rad),
-                      inputs.pose->y_m + blob.range_m * std::sin(heading_rad), inputs);
+  const Eigen::Vector2d place = place_of(blob, *inputs.pose);
+  return is_delivered(blob.colour, place.x(), place.y(), inputs);
 }
 
 bool MissionPlanner::is_delivered(std::uint8_t colour, double x_m, double y_m, const PlannerInputs& inputs) const {
@@ -122,9 +124,8 @@ const msg::MapObject* MissionPlanner::wanted_landmark(const PlannerInputs& input
 // turns and drives towards the zone until it is whole in view.
 void MissionPlanner::note_zone(const msg::Blob& zone, const PlannerInputs& inputs) {
   if (!inputs.pose) return;
-  const double heading_rad = inputs.pose->yaw_rad + zone.bearing_rad, centre_m = zone.range_m + config_.zone_radius_m;
-  memory_.zone_glimpse = {zone.colour, inputs.pose->x_m + centre_m * std::cos(heading_rad),
-                          inputs.pose->y_m + centre_m * std::sin(heading_rad), memory_.active_s};
+  const Eigen::Vector2d centre = place_of(zone, *inputs.pose, config_.zone_radius_m);
+  memory_.zone_glimpse = {zone.colour, centre.x(), centre.y(), memory_.active_s};
 }
 
 std::optional<Eigen::Vector2d> MissionPlanner::wanted_place(const PlannerInputs& inputs) const {

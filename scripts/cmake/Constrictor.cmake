@@ -192,6 +192,17 @@ function(constrictor_library name)
   constrictor_compile_together(${name})
 endfunction()
 
+# constrictor_module(NAME SOURCES ... LINK ...): the module NAME.so beside the programs, which load it when they need it
+# (configuration/lazy_module.hpp). Its target is NAME_module.
+function(constrictor_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(${name}_module MODULE ${ARG_SOURCES})
+  set_target_properties(${name}_module PROPERTIES
+    PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+  constrictor_position_independent(${name}_module)
+  target_link_libraries(${name}_module PRIVATE ${ARG_LINK})
+endfunction()
+
 # constrictor_component(NAME SOURCES ... LINK ...): the library constrictor_NAME with the component's class, and the
 # program NAME, made from main.cpp. The header NAME.hpp declares make_NAME_factory(), so that `constrictor_host` can
 # make the component, too.

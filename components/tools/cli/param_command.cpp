@@ -160,10 +160,9 @@ int get_parameter(const ParamOptions& options) {
 }
 
 /// Sets the parameters one after the other, until one is refused.
-int set_all(const ParamOptions& options, const std::vector<ParameterValue>& values) {
+int set_all(const ParamOptions& options, std::uint32_t domain, const std::vector<ParameterValue>& values) {
   const std::size_t count = values.size();
-  RequestClient client(join_run(options.view.domain).domain,
-                       operator_options(unique_source("param"), 0ms, /*detached=*/true));
+  RequestClient client(domain, operator_options(unique_source("param"), 0ms, /*detached=*/true));
   ParameterSetter setter(client);
   std::string reason;
   if (const int failed = connect(client, "param", &reason); failed != exit_status::kOk) {
@@ -204,7 +203,12 @@ int set_parameter(const ParamOptions& options) {
   if (options.changes.size() % 2 != 0) throw UsageError(options.changes.back() + " has no value");
   // Only a value that is not a number needs the parameters' names of values.
   std::vector<ParameterValue> values;
+  std::optional<std::uint32_t> domain;
   std::optional<ParameterView> view;
+  const auto joined = [&] {
+    if (!domain) domain = join_run(options.view.domain).domain;
+    return *domain;
+  };
   for (std::size_t i = 0; i < options.changes.size() / 2; ++i) {
     const std::string& name = options.changes[2 * i];
     const std::string& text = options.changes[2 * i + 1];
@@ -212,9 +216,7 @@ int set_parameter(const ParamOptions& options) {
     if (!value) {
       // Without a run there are no names, and the value is as wrong as any other text.
       const bool no_run = !options.view.domain && live_runs().empty();
-      if (!view)
-        view =
-            no_run ? ParameterView{} : read_parameters(dds::Domain(join_run(options.view.domain).domain).participant());
+      if (!view) view = no_run ? ParameterView{} : read_parameters(dds::Domain(joined()).participant());
       const auto found = view->parameters.find(name);
       if (found == view->parameters.end() && !view->parameters.empty() && view->silent.empty())
         throw no_such_parameter(name, *view);
@@ -226,7 +228,7 @@ int set_parameter(const ParamOptions& options) {
     }
     values.push_back({name, *value, text});
   }
-  return set_all(options, values);
+  return set_all(options, joined(), values);
 }
 
 int dump(const ParamOptions& options) {
@@ -254,13 +256,14 @@ int load(const ParamOptions& options) {
   if (!stream.is_open() || stream.bad())
     throw ConfigurationError(fmt::format("{}: cannot be read: {}", options.file, ::strerrordesc_np(errno)));
   std::vector<ParameterValue> values;
+  const std::uint32_t number = join_run(options.view.domain).domain;
   {
-    const dds::Domain domain(join_run(options.view.domain).domain);
+    const dds::Domain domain(number);
     const ParameterView view = read_parameters(domain.participant());
     report_silent(view);
     values = read_parameter_file(text, options.file, view, is_in_configuration);
   }
-  if (!values.empty()) return set_all(options, values);
+  if (!values.empty()) return set_all(options, number, values);
   if (options.view.json) fmt::print("[]\n");
   else fmt::print("every parameter of the file has its value already\n");
   return exit_status::kOk;

@@ -140,22 +140,7 @@ TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThat
     forget();
     deliver_green_and_release_red();
     memory_.placed.at(0).handle = 9;  // as navigation reports it
-    for (int i = 0; i < 70 && memory_.object_index == 1; ++i) {
-      map_red_and_green(0.1, 0.2);
-      step();
-    }
-    ASSERT_EQ(memory_.state, kInspect);
-    EXPECT_EQ(memory_.delivered, 2u);
-    map_red_and_green(0.1, 0.2);
-    step();
-    EXPECT_EQ(last_.parameters.object_colour, msg::kColourGreen);
-    EXPECT_EQ(last_.parameters.object_handle, 9) << "another object in view proves nothing";
-    for (int i = 0; i < 200 && memory_.state == kInspect; ++i) {
-      map_red_and_green(offset_m, 0.03);
-      step();
-    }
-    EXPECT_EQ(memory_.state, offset_m < 0.4 ? kDone : kSearchObject) << offset_m;
-    EXPECT_EQ(memory_.delivered, offset_m < 0.4 ? 3u : 2u);
+    expect_second_look(0.1, offset_m, 9, [this](double first_m, double sd_m) { map_red_and_green(first_m, sd_m); });
     EXPECT_EQ(memory_.recoveries, offset_m < 0.4 ? 0 : 1);
   }
 }

@@ -195,6 +195,29 @@ class PlannerTest : public ::testing::Test {
     }
   }
 
+  /// After the last drop the robot looks once more at the object that it delivered first, which it names by `handle`;
+  /// it then lies `offset_m` from the centre of its zone. `map_both`: maps both objects, with the offset and the
+  /// standard deviation of the first one.
+  template <class MapBoth>
+  void expect_second_look(double uncertain_m, double offset_m, std::uint16_t handle, const MapBoth& map_both) {
+    for (int i = 0; i < 70 && memory_.object_index == 1; ++i) {
+      map_both(uncertain_m, 0.2);
+      step();
+    }
+    ASSERT_EQ(memory_.state, MissionState::kInspect);
+    EXPECT_EQ(memory_.delivered, 2u);
+    map_both(uncertain_m, 0.2);
+    step();
+    EXPECT_EQ(last_.parameters.object_handle, handle) << "another object in view proves nothing";
+    EXPECT_EQ(last_.parameters.object_colour, config_.sequence[0]);
+    for (int i = 0; i < 200 && memory_.state == MissionState::kInspect; ++i) {
+      map_both(offset_m, 0.03);
+      step();
+    }
+    EXPECT_EQ(memory_.state, offset_m < 0.4 ? MissionState::kDone : MissionState::kSearchObject) << offset_m;
+    EXPECT_EQ(memory_.delivered, offset_m < 0.4 ? 3u : 2u);
+  }
+
   PlannerConfig config_;
   MissionMemory memory_;
   msg::LinePercept line_{};

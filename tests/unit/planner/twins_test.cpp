@@ -89,21 +89,7 @@ TEST_F(TwinsTest, TheFirstOneIsLookedAtOnceMoreIfItWasTouched) {
     auto done = event(msg::kEventDroppingDone, msg::kGoalSucceeded);
     done.object_handle = 3;
     step({done});
-    for (int i = 0; i < 70 && memory_.object_index == 1; ++i) {
-      map_both(0.2, 0.2);
-      step();
-    }
-    ASSERT_EQ(memory_.state, kInspect);
-    EXPECT_EQ(memory_.delivered, 2u);
-    map_both(0.2, 0.2);
-    step();
-    EXPECT_EQ(last_.parameters.object_handle, 2) << "the other one in view proves nothing";
-    for (int i = 0; i < 200 && memory_.state == kInspect; ++i) {
-      map_both(offset_m, 0.03);
-      step();
-    }
-    EXPECT_EQ(memory_.state, offset_m < 0.4 ? kDone : kSearchObject) << offset_m;
-    EXPECT_EQ(memory_.delivered, offset_m < 0.4 ? 3u : 2u);
+    expect_second_look(0.2, offset_m, 2, map_both);
   }
 }
 
