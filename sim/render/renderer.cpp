@@ -5,6 +5,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "sim/render/bodies.hpp"
 #include "sim/render/gl_handles.hpp"
@@ -13,6 +14,7 @@
 #include "sim/render/meshes.hpp"
 #include "sim/render/projection.hpp"
 #include "sim/render/render_targets.hpp"
+#include "sim/render/shader_compiler.hpp"
 #include "sim/render/shaders.hpp"
 #include "sim/render/visibility.hpp"
 
@@ -79,6 +81,7 @@ class Renderer::Implementation {
   GlTexture pattern_;
   ShadowMap shadow_map_, no_shadows_;
   ImageTarget target_;
+  bool has_drawn_ = false;
 };
 
 Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions& options)
@@ -265,6 +268,8 @@ const std::vector<std::uint8_t>& Renderer::Implementation::draw(const ScenePoses
   draw_image(camera, view, shadow, draw_shadow_map(camera, view, shadow));
   const std::vector<std::uint8_t>& rgb = target_.read();
   check_gl("drawing");
+  // The first frame compiled the shaders.
+  if (!std::exchange(has_drawn_, true)) release_shader_compiler();
   return rgb;
 }
 
