@@ -95,6 +95,8 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   [[nodiscard]] std::string mission_json(const Tick& tick, const std::string& figure_error) const;
   [[nodiscard]] nlohmann::ordered_json objects_json() const;
   [[nodiscard]] std::string scenario() const;
+  /// Draws the pictures of the scene. Returns why it could not; empty: it could.
+  [[nodiscard]] std::string draw_scenes(const std::vector<report::Moment>& moments);
   /// Returns why there is no figure.png; empty: there is.
   [[nodiscard]] std::string draw_figure(const Tick& tick, const std::vector<report::Moment>& moments);
   /// Appends to a journal, if the disk takes it.

@@ -111,6 +111,16 @@ std::string Report::mission_json(const Tick& tick, const std::string& figure_err
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
+std::string Report::draw_scenes(const std::vector<report::Moment>& moments) {
+  if (!scene_) return {};
+  try {
+    report::draw_scene_pictures(folder_, moments, *scene_, head_camera_m_, lost_);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return {};
+}
+
 std::string Report::draw_figure(const Tick& tick, const std::vector<report::Moment>& moments) {
   std::vector<figure::FileRow> rows;
   for (const report::Moment& moment : report::merge_end(moments)) {
@@ -146,8 +156,10 @@ void Report::write_files(const Tick& tick) {
   if (folder_.empty()) return;
   if (processed_ && image_violation(*processed_).empty()) state_.album.finish(folder_, *processed_, lost_);
   const std::vector<report::Moment> moments = report::figure_rows(state_.album.moments);
-  if (scene_) report::draw_scene_pictures(folder_, moments, *scene_, head_camera_m_, lost_);
-  const std::string figure_error = draw_figure(tick, moments);  // the verdict is needed without a figure, too
+  // The verdict is needed without pictures, too.
+  std::string figure_error = draw_scenes(moments);
+  if (const std::string error = draw_figure(tick, moments); figure_error.empty()) figure_error = error;
+  if (!figure_error.empty()) log_.warning("the figure is missing or incomplete: {}", figure_error);
   // mission.json is written last: its presence shows that the other files are complete.
   const auto write_mission = [&] { report::replace_file(folder_ / "mission.json", mission_json(tick, figure_error)); };
   if (!lost_.attempt(write_mission)) {

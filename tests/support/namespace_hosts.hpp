@@ -110,6 +110,11 @@ class NamespaceHosts {
                                  folder(host) / "tmp", folder(host) / "run"})
       fs::create_directories(made);
     for (const auto& name : programs) fs::copy_file(program(name), prefix / "libexec/constrictor" / name);
+    // The modules that programs load when they need them lie beside these.
+    for (const auto& entry : fs::directory_iterator(fs::path(program("report")).parent_path())) {
+      if (entry.path().extension() == ".so")
+        fs::copy_file(entry.path(), prefix / "libexec/constrictor" / entry.path().filename());
+    }
     fs::create_symlink("../libexec/constrictor/constrictor", prefix / "bin/constrictor");
     for (const char* part : {"components", "sim", "deploy"}) {
       for (const auto& entry : fs::recursive_directory_iterator(source / part)) {

@@ -130,6 +130,8 @@ RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcom
   }
   // The verdict must be heard also if the disk is full.
   if (const std::string files = unwritten_files(mission); !files.empty()) verdict.notices.push_back(files);
+  if (const Json why = mission.value("figure_error", Json()); why.is_string())
+    verdict.notices.push_back("the figure is missing or incomplete: " + why.get<std::string>());
   try {
     write_whole(report_dir / "report.json", json_text(report, 1) + "\n");
   } catch (const std::system_error& error) {
