@@ -10,12 +10,8 @@
 
 namespace constrictor {
 
-/// The methods that move the body along a path, by the values of `motion.KIND.method`.
-inline const std::vector<std::string>& drive_methods() {
-  static const std::vector<std::string> names{"undulation", "sidewinding",  "rolling",       "pitch_wave",
-                                              "concertina", "sliding_mode", "obstacle_aided"};
-  return names;
-}
+/// The methods that move the body along a path, by the values of `motion.KIND.method`: DRIVE_METHODS in CMakeLists.txt.
+const std::vector<std::string>& drive_methods();
 
 /// How control performs a kind of motion along a path.
 struct MotionParameters {

@@ -92,12 +92,15 @@ struct MethodProgress {
 /// exceed the robot's limits: JointLimiter enforces them.
 ///
 /// To add a method: write methods/NAME.cpp, which defines `std::unique_ptr<ControlMethod> make_NAME()`, and add NAME to
-/// the list CONTROL_METHODS in CMakeLists.txt. A program of one's own can instead pass its methods to
+/// DRIVE_METHODS or OTHER_METHODS in CMakeLists.txt. A program of one's own can instead pass its methods to
 /// make_control_factory.
 class ControlMethod {
  public:
   virtual ~ControlMethod() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Whether the robot knows its pose while this method moves it: the odometry of guidance assumes that links slide
+  /// along their axes more than across. `constrictor check` warns of a mission with a method that loses the pose.
+  [[nodiscard]] virtual bool keeps_pose() const { return false; }
   /// True if the method can follow this trajectory. If it cannot, control holds the posture.
   [[nodiscard]] virtual bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const;
   /// Called before the first step of a motion: when motion_id or the method has changed.
@@ -108,7 +111,7 @@ class ControlMethod {
   virtual MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const = 0;
 };
 
-/// The methods of CONTROL_METHODS in CMakeLists.txt.
+/// The methods of DRIVE_METHODS and OTHER_METHODS in CMakeLists.txt.
 std::vector<std::unique_ptr<ControlMethod>> built_in_methods();
 
 /// All methods by name.

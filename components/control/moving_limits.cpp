@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "control/control_method.hpp"
 #include "robot/u_arms.hpp"
 
 namespace constrictor {
@@ -63,19 +65,26 @@ double wave_rate_rad_s(const RobotModel& robot, const ControlConfig& config) {
   return 2.0 * std::numbers::pi * config.most_hz * swing_rad;
 }
 
-/// Whether the odometry of guidance holds for a body that this method moves (README.md, "Methods").
-bool keeps_pose(const std::string& method) { return method == "undulation" || method == "sliding_mode"; }
+/// Warns of a method for a kind of motion without an object with which the robot loses its pose.
+void judge_method(const std::string& kind, const MotionParameters& motion, CheckVerdict& verdict) {
+  const MethodRegistry methods;
+  const auto keeps_pose = [&](const std::string& name) { return methods.find(name)->keeps_pose(); };
+  const std::string& chosen = drive_methods().at(motion.method);
+  if (keeps_pose(chosen)) return;
+  std::vector<std::string> keeping;
+  std::copy_if(drive_methods().begin(), drive_methods().end(), std::back_inserter(keeping), keeps_pose);
+  verdict.warnings.push_back(
+      fmt::format("control: motion.{}.method: found {}, missions succeed with {}: the robot loses its pose with other "
+                  "methods",
+                  kind, chosen, fmt::join(keeping, " and ")));
+}
 
 }  // namespace
 
 CheckVerdict judge_joints(const RobotModel& robot, const ControlConfig& config) {
   CheckVerdict verdict;
-  if (const std::string& method = drive_methods()[config.travel.method]; !keeps_pose(method)) {
-    verdict.warnings.push_back(
-        fmt::format("control: motion.travel.method: found {}, missions succeed with undulation and sliding_mode: the "
-                    "robot loses its pose with other methods",
-                    method));
-  }
+  judge_method("travel", config.travel, verdict);
+  judge_method("creep", config.creep, verdict);
   if (robot.yaw_joints().empty() || config.travel.method != 0) return verdict;  // measured for undulation
   const double share = link_share(robot);                                       // shorter links bend less
   const double least_rad = share * kLeastRange_rad, enough_rad = share * kEnoughRange_rad;

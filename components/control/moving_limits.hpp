@@ -8,10 +8,10 @@
 
 namespace constrictor {
 
-/// What is wrong with this robot and its method for travelling: a method with which the robot loses its pose; range,
-/// rate, torque or position gain of most of its yaw joints, or the number of its modules. The bounds are measured
-/// (README.md): with a range, rate or torque below the one the robot covers less than a twentieth of its usual way, and
-/// below the other less than a quarter.
+/// What is wrong with this robot and its methods for moving without an object: a method with which the robot loses its
+/// pose; range, rate, torque or position gain of most of its yaw joints, or the number of its modules. The bounds are
+/// measured with undulation (README.md), and judged only where the robot travels by it: with a range, rate or torque
+/// below the one the robot covers less than a twentieth of its usual way, and below the other less than a quarter.
 [[nodiscard]] CheckVerdict judge_joints(const RobotModel& robot, const ControlConfig& config);
 
 }  // namespace constrictor

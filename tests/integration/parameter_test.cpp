@@ -183,6 +183,8 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   EXPECT_EQ(ask({"param", "get", kMethod})["value"], "undulation");
   EXPECT_EQ(command({"param", "set", kMethod, "moonwalk"}), exit_status::kUsage);
   EXPECT_NE(output_.find("found 'moonwalk', accepted one of undulation, sidewinding, "), std::string::npos) << output_;
+  EXPECT_EQ(command({"param", "set", kMethod, "sidewindig"}), exit_status::kUsage);
+  EXPECT_NE(output_.find(", did you mean 'sidewinding'?"), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "set", kMethod, "sidewinding", kFrequency, "0.8"}), 0) << output_;
   EXPECT_NE(output_.find("control.motion.travel.method: sidewinding from tick "), std::string::npos) << output_;
   ASSERT_TRUE(eventually([&] { return ask({"param", "get", kMethod})["value"] == "sidewinding"; }));

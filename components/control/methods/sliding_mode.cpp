@@ -41,6 +41,7 @@ struct Axis {
 class SlidingMode : public ControlMethod {
  public:
   std::string_view name() const override { return "sliding_mode"; }
+  bool keeps_pose() const override { return true; }
   /// A body that holds an object is not moved by torques: the law knows nothing of the object.
   bool accepts(const msg::DesiredTrajectory& desired, const YawChain& chain) const override {
     return ControlMethod::accepts(desired, chain) &&

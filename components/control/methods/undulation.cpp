@@ -8,6 +8,7 @@ namespace {
 class Undulation : public PostureMethod {
  public:
   std::string_view name() const override { return "undulation"; }
+  bool keeps_pose() const override { return true; }
 
  protected:
   MethodProgress progress(double left_rad, BodyState&) const override { return {false, left_rad > 0.0 ? 0.0 : 1.0}; }

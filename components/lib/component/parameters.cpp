@@ -15,10 +15,12 @@ namespace {
 /// there is room for as many changes that take effect at the next tick.
 constexpr std::size_t kMostWaiting = std::size_t{2} * msg::kMaxParameterChanges;
 
+/// `what` the text is, of which parameter: for the message.
 template <std::size_t N>
-void set_whole_text(char (&field)[N], const std::string& text) {
+void set_whole_text(char (&field)[N], const std::string& text, const std::string& what) {
   if (text.size() >= N)
-    throw std::logic_error("parameter " + text + ": more than " + std::to_string(N - 1) + " characters");
+    throw std::logic_error(what + ": found " + std::to_string(text.size()) + " characters, accepted at most " +
+                           std::to_string(N - 1) + ": " + text);
   set_text(field, text);
 }
 
@@ -70,7 +72,7 @@ Parameters::Parameters(Wiring& wiring, const Topic<msg::ParameterList>& topic, P
     row.facts.is_integer = described.text.is_integer || !names.empty();
     std::string choices;
     for (const auto& name : names) choices += (choices.empty() ? "" : " ") + name;
-    set_whole_text(row.facts.choices, choices);
+    set_whole_text(row.facts.choices, choices, "parameter " + described.text.key + ", names of its values");
     add(row, described.text.key, described.text.unit, {described.text.bounds.min, described.text.bounds.max},
         described.text.meaning);
   }
@@ -100,9 +102,9 @@ void Parameters::add(int& field, std::string_view key, std::string_view unit, Pa
 void Parameters::add(Row row, std::string_view key, std::string_view unit, ParameterBounds bounds,
                      std::string_view doc) {
   const std::string name = owner_ + "." + std::string(key);
-  set_whole_text(row.facts.name, name);
-  set_whole_text(row.facts.unit, std::string(unit));
-  set_whole_text(row.facts.doc, std::string(doc));
+  set_whole_text(row.facts.name, name, "name of a parameter");
+  set_whole_text(row.facts.unit, std::string(unit), "parameter " + name + ", unit");
+  set_whole_text(row.facts.doc, std::string(doc), "parameter " + name + ", meaning");
   row.facts.default_value = row.get(row.field);
   row.facts.minimum = bounds.min;
   row.facts.maximum = bounds.max;
@@ -112,7 +114,10 @@ void Parameters::add(Row row, std::string_view key, std::string_view unit, Param
                                    [](const Row& r, const std::string& n) { return r.facts.name < n; });
   if (at != rows_.end() && name == at->facts.name) throw std::logic_error("parameter " + name + " exists twice");
   if (rows_.size() >= msg::kMaxParameters)
-    throw std::logic_error("parameter " + name + " exceeds the list of " + std::to_string(msg::kMaxParameters));
+    throw std::logic_error(owner_ + " declares more parameters that may change during a run than the " +
+                           std::to_string(msg::kMaxParameters) +
+                           " that its list can hold: declare one kAtStart, or raise kMaxParameters in "
+                           "idl/constrictor/parameter.idl");
   rows_.insert(at, row);
 }
 

@@ -175,7 +175,7 @@ std::string Configuration::text(std::string_view key, const std::vector<std::str
   const YAML::Node node = value_of(*node_, key);
   if (!node.IsDefined() && fallback) return *fallback;
   if (node.IsScalar() && is_choice(node.Scalar(), choices)) return node.Scalar();
-  throw refusal(key, node, describe(choices));
+  throw refusal(key, node, describe(choices) + (node.IsScalar() ? did_you_mean(node.Scalar(), choices) : ""));
 }
 
 std::vector<double> Configuration::numbers(std::string_view key, Range accepted, std::size_t min_count,

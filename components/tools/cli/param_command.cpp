@@ -21,6 +21,7 @@
 #include "client/parameters.hpp"
 #include "client/run_registry.hpp"
 #include "component/parameters.hpp"
+#include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
 #include "configuration/whole_file.hpp"
 #include "constrictor/json.hpp"
@@ -223,8 +224,9 @@ int set_parameter(const ParamOptions& options) {
       const msg::Parameter known = found == view->parameters.end() ? msg::Parameter{} : found->second.parameter;
       value = value_from(known, text);
       if (!value)
-        throw UsageError(fmt::format("VALUE of {}: found '{}', accepted {}", name, text,
-                                     *known.choices ? accepted_text(known) : "a number"));
+        throw UsageError(fmt::format("VALUE of {}: found '{}', accepted {}{}", name, text,
+                                     *known.choices ? accepted_text(known) : "a number",
+                                     did_you_mean(text, choices_of(known))));
     }
     values.push_back({name, *value, text});
   }

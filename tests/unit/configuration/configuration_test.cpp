@@ -131,6 +131,10 @@ TEST(Configuration, NamesAWrongChoice) {
               parse("a: pink").text("a", {"green", "red"});
             }),
             "x.yaml:1: a: found pink, accepted one of green, red");
+  EXPECT_EQ(error_of([] {
+              parse("a: gren").text("a", {"green", "red"});
+            }),
+            "x.yaml:1: a: found gren, accepted one of green, red, did you mean 'green'?");
   EXPECT_EQ(error_of([] { parse("a: [1]").text("a"); }), "x.yaml:1: a: found a list of 1, accepted a text");
   EXPECT_EQ(error_of([] {
               parse("a:\n- red\n- pink").texts("a", {"red", "blue"});

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "component/data_path.hpp"
 #include "control/control_fit.hpp"
@@ -38,8 +39,10 @@ TEST(MovingLimits, AMethodWithWhichTheRobotLosesItsPoseIsWarnedOf) {
     ControlConfig config = control_fitted_to(mamba(), {});
     config.travel.method = static_cast<std::uint8_t>(i);
     const std::string& method = drive_methods()[i];
-    const bool keeps_pose = method == "undulation" || method == "sliding_mode";
-    EXPECT_EQ(kind_of(mamba(), config), keeps_pose ? "accepted" : "warned") << method;
+    const char* expected = method == "undulation" || method == "sliding_mode" ? "accepted" : "warned";
+    EXPECT_EQ(kind_of(mamba(), config), expected) << method;
+    std::swap(config.travel.method, config.creep.method);
+    EXPECT_EQ(kind_of(mamba(), config), expected) << method << " for small steps beside an object";
   }
 }
 

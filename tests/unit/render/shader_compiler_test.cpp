@@ -44,7 +44,9 @@ TEST(ShaderCompiler, TakesNoMemoryAfterTheFirstFrame) {
 TEST(ShaderCompiler, WorksAgainAfterItsMemoryWasGivenBack) {
   auto scene = testing::busy_scene();
   scene.ground_gloss = 0.5;
-  const RenderOptions options{.samples = 4, .shadow_taps = 3};
+  RenderOptions options;
+  options.samples = 4;
+  options.shadow_taps = 3;
   const auto draw = [&] { return Renderer(scene, options).draw(testing::busy_poses(), testing::scene_camera(), {}); };
   const auto frame = draw();
   for (int i = 0; i < 3; ++i) {

@@ -124,25 +124,27 @@ std::string printed(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
-/// A table of at most 80 columns. It shows hosts only if the run has several.
+/// A table of 80 columns, or more for names of more than 11 letters. It shows hosts only if the run has several.
 std::string table(const RunNote& run, const RunView& view, const RateMeter& rates) {
-  constexpr const char* kRow = "{:<12}{:<8}{:>8}{:>7}{:>8}{:>8}{:>9}{:>8}{:>4}{:>8}\n";
-  std::string text = fmt::format(kRow, "component", "state", "tick", "[Hz]", "p50[us]", "p99[us]", "overruns",
+  constexpr const char* kRow = "{:<{}}{:<8}{:>8}{:>7}{:>8}{:>8}{:>9}{:>8}{:>4}{:>8}\n";
+  std::size_t width = 12;
+  for (const auto& name : run.roster) width = std::max(width, name.size() + 1);
+  std::string text = fmt::format(kRow, "component", width, "state", "tick", "[Hz]", "p50[us]", "p99[us]", "overruns",
                                  "refused", "inc", "pid");
   std::set<std::string> hosts;
   for (const auto& [name, status] : view.components) hosts.insert(status.host);
   for (const auto& name : run.roster) {
     const auto found = view.components.find(name);
     if (found == view.components.end()) {
-      text += fmt::format("{:<12}no status yet\n", name);
+      text += fmt::format("{:<{}}no status yet\n", name, width);
       continue;
     }
     const auto& status = found->second;
-    text += fmt::format(kRow, name, name_of(constants::kComponent, status.state), status.tick,
+    text += fmt::format(kRow, name, width, name_of(constants::kComponent, status.state), status.tick,
                         printed(rates.rate_hz(name), "{:.1f}"), printed(status.step_time_p50_us, "{:.0f}"),
                         printed(status.step_time_p99_us, "{:.0f}"), view.overruns.at(name), view.refused.at(name),
                         status.incarnation, status.pid);
-    if (hosts.size() > 1) text += fmt::format("{:<12}on {}\n", "", status.host);
+    if (hosts.size() > 1) text += fmt::format("{:<{}}on {}\n", "", width, status.host);
     if (std::isfinite(status.jitter_p99_us))
       text += wrapped(fmt::format("ticks {:.1f} ms late (99 %), {:.1f} at most; scheduling: {}",
                                   1e-3 * status.jitter_p99_us, 1e-3 * status.jitter_max_us,
