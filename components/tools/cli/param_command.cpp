@@ -180,7 +180,7 @@ int set_all(const ParamOptions& options, std::uint32_t domain, const std::vector
                       {"value", change.value},
                       {"effective_tick", change.effective_tick},
                       {"accepted_tick", change.header.tick}});
-      if (!options.view.json) fmt::print("{}: {} from tick {} on\n", name, text, change.effective_tick);
+      if (!options.view.json) fmt::print("run {}: {}: {} from tick {} on\n", domain, name, text, change.effective_tick);
     } catch (const CommandError& error) {
       status = error.cause() == CommandError::Cause::kRefused       ? exit_status::kFailed
                : error.cause() == CommandError::Cause::kInterrupted ? interrupt_status()
