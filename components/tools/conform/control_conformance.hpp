@@ -58,8 +58,11 @@ class ControlConformance {
                                           double from_s = 0.0);
   /// [rad] by how much any setpoint changed between the ticks from `from_s` on.
   [[nodiscard]] static double moved_rad(const Steps& steps, double from_s);
+  /// They point into `steps`, which must therefore not be a temporary.
   [[nodiscard]] static const msg::JointCommand* last_command(const Steps& steps);
   [[nodiscard]] static const msg::MotionStatus* last_state(const Steps& steps);
+  static void last_command(Steps&&) = delete;
+  static void last_state(Steps&&) = delete;
   /// [rad] the setpoints of the yaw joints, from the head.
   [[nodiscard]] std::vector<double> yaw_angles(const msg::JointCommand& command) const;
 

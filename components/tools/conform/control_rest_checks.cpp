@@ -184,10 +184,15 @@ bool ControlConformance::check_arrival() {
 
 void ControlConformance::check_refusals() {
   const auto refuses = [&](const char* name, const char* todo) {
-    const msg::JointCommand before = *last_command(go(0.2));
+    const Steps before_it = go(0.2);
+    const msg::JointCommand* before = last_command(before_it);
+    if (before == nullptr) {
+      report_.judge(name, true, "no command in the 0.2 s before", "write joint_command in each tick");
+      return;
+    }
     const Steps steps = go(1.0);
     const msg::MotionStatus* state = last_state(steps);
-    const double far_rad = strayed_rad(steps, {before.position_rad, before.position_rad + before.joint_count});
+    const double far_rad = strayed_rad(steps, {before->position_rad, before->position_rad + before->joint_count});
     const bool accepted = state == nullptr || state->accepted;
     report_.judge(name, accepted || far_rad > profile_.posture_rad,
                   accepted ? "accepted" : fmt::format("not accepted, the setpoints move by {:.3f} rad", far_rad), todo);

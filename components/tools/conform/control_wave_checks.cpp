@@ -66,7 +66,8 @@ void ControlConformance::check_wave() {
     return;
   }
   travel(profile_.speed_m_s, 0.0);
-  const msg::MotionStatus* state = last_state(go(profile_.settle_s));
+  const Steps settling = go(profile_.settle_s);
+  const msg::MotionStatus* state = last_state(settling);
   const double period_s = state ? state->period_s : 0.0;
   constexpr double kLongest_s = 10.0;
   rate_hz_ = 1.0 / (period_s > 0.0 ? std::min(period_s, kLongest_s) : 1.0);
