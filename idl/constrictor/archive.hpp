@@ -33,7 +33,7 @@ class BytesReader : public cereal::InputArchive<BytesReader, cereal::AllowEmptyC
   explicit BytesReader(std::string_view bytes) : InputArchive(this), left_(bytes) {}
   void read(void* data, std::size_t size) {
     if (size > left_.size()) throw cereal::Exception("the bytes end too early");
-    std::memcpy(data, left_.data(), size);
+    if (size > 0) std::memcpy(data, left_.data(), size);  // an empty block has no address
     left_.remove_prefix(size);
   }
 
