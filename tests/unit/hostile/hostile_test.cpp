@@ -242,5 +242,10 @@ std::vector<std::string> tried_components() {
 INSTANTIATE_TEST_SUITE_P(EveryComponent, Hostile, ::testing::ValuesIn(tried_components()),
                          [](const auto& made) { return made.param; });
 
+TEST(HostileTest, CoversEveryComponent) {
+  EXPECT_EQ(known_components().size(), 10u + 2u) << "a new component is tried by itself; it is only counted here";
+  EXPECT_EQ(tried_components().size(), 10u);
+}
+
 }  // namespace
 }  // namespace constrictor::testing
