@@ -66,8 +66,8 @@ double wave_rate_rad_s(const RobotModel& robot, const ControlConfig& config) {
 }
 
 /// Warns of a method for a kind of motion without an object with which the robot loses its pose.
-void judge_method(const std::string& kind, const MotionParameters& motion, CheckVerdict& verdict) {
-  const MethodRegistry methods;
+void judge_method(const MethodRegistry& methods, const char* kind, const MotionParameters& motion,
+                  CheckVerdict& verdict) {
   const auto keeps_pose = [&](const std::string& name) { return methods.find(name)->keeps_pose(); };
   const std::string& chosen = drive_methods().at(motion.method);
   if (keeps_pose(chosen)) return;
@@ -83,8 +83,9 @@ void judge_method(const std::string& kind, const MotionParameters& motion, Check
 
 CheckVerdict judge_joints(const RobotModel& robot, const ControlConfig& config) {
   CheckVerdict verdict;
-  judge_method("travel", config.travel, verdict);
-  judge_method("creep", config.creep, verdict);
+  const MethodRegistry methods;
+  judge_method(methods, "travel", config.travel, verdict);
+  judge_method(methods, "creep", config.creep, verdict);
   if (robot.yaw_joints().empty() || config.travel.method != 0) return verdict;  // measured for undulation
   const double share = link_share(robot);                                       // shorter links bend less
   const double least_rad = share * kLeastRange_rad, enough_rad = share * kEnoughRange_rad;
