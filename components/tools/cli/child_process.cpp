@@ -41,7 +41,7 @@ const char* meaning(int code) {
       return " (refused by the run)";
     case exit_status::kConfiguration:
       return " (configuration)";
-    case 127:
+    case kNoSuchProgram:
       return " (program not found)";
     default:
       return "";
@@ -92,7 +92,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& argv, const std::vect
     static_cast<void>(!::write(STDERR_FILENO, ": ", 2));
     static_cast<void>(!::write(STDERR_FILENO, reason, std::strlen(reason)));
     static_cast<void>(!::write(STDERR_FILENO, "\n", 1));
-    ::_exit(127);
+    ::_exit(kNoSuchProgram);
   }
   const int error = errno;
   ::close(output);

@@ -12,6 +12,9 @@
 
 namespace constrictor::cli {
 
+/// Exit status of a child that could not execute its program, as shells use it.
+inline constexpr int kNoSuchProgram = 127;
+
 /// How a process ended.
 struct ChildExit {
   int wait_status = 0;  ///< as waitpid reports it

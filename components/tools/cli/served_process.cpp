@@ -22,7 +22,6 @@ constexpr auto kLongestPause = 10000ms;
 constexpr auto kSoon = 5s;  // a process that ends sooner will probably end as soon after its next start
 constexpr std::uint32_t kLargestIncarnation = 1'000'000;
 constexpr std::size_t kLongestLine = 4096;
-constexpr int kNoSuchProgram = 127;
 
 }  // namespace
 

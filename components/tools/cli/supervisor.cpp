@@ -21,7 +21,6 @@ constexpr auto kEndTogether = 3s;            // a process may end this long befo
 constexpr auto kTermination = 3s;            // from SIGTERM to SIGKILL
 constexpr auto kTellWhoIsMissingAfter = 5s;  // while processes end
 constexpr auto kChildPoll = 10ms;
-constexpr int kNoSuchProgram = 127;
 
 /// True if a process that ended with this status would end in the same way after a restart.
 bool is_final(int code) {

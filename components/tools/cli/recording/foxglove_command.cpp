@@ -28,7 +28,7 @@ struct FoxgloveOptions {
 };
 
 /// Ctrl-C: no file is left.
-class Interrupted {};
+class ExportInterrupted {};
 
 bool is_view(const std::string& topic) {
   return std::any_of(views::kViewTopics.begin(), views::kViewTopics.end(),
@@ -60,7 +60,7 @@ class CopyForViewers {
 
  private:
   void take(const mcap::Channel& channel, const mcap::Message& message) {
-    if (interrupt_signal() != 0) throw Interrupted();
+    if (interrupt_signal() != 0) throw ExportInterrupted();
     if (is_view(channel.topic)) return;  // of a recording that is such a copy: they are made again
     copy_.copy(channel, message);
     made_.take(channel.topic, message.data, message.log_time);
@@ -110,7 +110,7 @@ int foxglove(const FoxgloveOptions& options) {
           "those of a simulated run again\n");
     if (!copy.incomplete().empty()) fmt::print("the recording is incomplete: {}\n", copy.incomplete());
     return exit_status::kOk;
-  } catch (const Interrupted&) {
+  } catch (const ExportInterrupted&) {
     ProgressDisplay().print("foxglove: interrupted; nothing was written");
     return interrupt_status();
   }

@@ -74,7 +74,7 @@ SshConnection::SshConnection(const HostPlan& host, const std::string& token, boo
     ::execvp(arguments[0], arguments.data());
     static constexpr char kNoSsh[] = "cannot start ssh; install openssh-client\n";
     static_cast<void>(!::write(STDERR_FILENO, kNoSsh, sizeof(kNoSsh) - 1));
-    ::_exit(127);
+    ::_exit(kNoSuchProgram);
   }
   if (pid_ < 0) throw std::system_error(errno, std::generic_category(), "fork");
   channel_ = std::make_unique<MessageChannel>(std::move(ours));
