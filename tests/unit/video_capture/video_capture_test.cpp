@@ -112,10 +112,12 @@ class VideoCaptureTest : public ::testing::Test {
   }
   [[nodiscard]] std::string folder_source() const { return "source: " + (folder_.path() / "pictures").string(); }
   /// Advances until the count of images is reached.
-  /// The thread sanitizer needs 20 s for the start of GStreamer, because it names the functions of each race that it
-  /// suppresses.
-  bool images(std::size_t count) {
-    return eventually([&] { return run_->advance(1), images_.size() >= count; }, std::chrono::seconds(60));
+  bool images(std::size_t count, std::chrono::seconds bound = std::chrono::seconds(20)) {
+    const auto enough = [&] {
+      run_->advance(1);
+      return images_.size() >= count;
+    };
+    return eventually(enough, bound);
   }
   /// The lines of the log.
   [[nodiscard]] std::string log() const {
@@ -155,7 +157,8 @@ TEST_F(VideoCaptureTest, ShowsAPipelineOfGStreamer) {
       "source: 'videotestsrc is-live=true pattern=red ! video/x-raw,width=320,height=240,framerate=10/1 ! videoconvert "
       "! appsink'\nstream: {frame_rate_hz: 10, timeout_s: 5}",
       false);
-  ASSERT_TRUE(images(3)) << refusals() << " (scripts/setup.sh tests installs the elements of the pipeline)";
+  constexpr std::chrono::seconds kBound(60);  // the thread sanitizer needs 20 s: it names each race that it suppresses
+  ASSERT_TRUE(images(3, kBound)) << refusals() << " (scripts/setup.sh tests installs the elements of the pipeline)";
   EXPECT_EQ(images_.back().width, 320);
   EXPECT_GT(images_.back().red, 200);
   EXPECT_LT(images_.back().blue, 40);
