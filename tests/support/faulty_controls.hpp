@@ -171,6 +171,8 @@ inline PartFault control_fault(const std::string& name, const std::shared_ptr<st
       if (*restarted) std::fill_n(c.position_rad, c.joint_count, 0.0);
       return true;
     });
+  if (is("falls_silent")) command([memory](msg::JointCommand&) { return ++*memory < 300; });
+  if (is("loses_its_state")) state([memory](msg::MotionStatus&) { return ++*memory < 300; });
   if (is("random"))
     command([memory](msg::JointCommand& c) {
       c.position_rad[0] += 1e-12 * static_cast<double>(++*memory);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "constrictor/text.hpp"
+#include "cyclone/abort_place.hpp"
 #include "cyclone/create_domain.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "cyclone/security.hpp"
@@ -96,6 +97,7 @@ Entity create_participant(std::uint32_t domain, Reach reach, const std::string& 
 
 Entity create_domain(std::uint32_t domain, Reach reach, const std::string& settings) {
   limit_log_of_dds();
+  say_where_aborted();
   const char* chosen = std::getenv("CYCLONEDDS_URI");
   if (reach == Reach::kNetwork || (chosen && settings.empty())) return {};
   std::string configuration = chosen ? chosen : configuration_of(domain);

@@ -24,6 +24,7 @@ class ControlConformance {
 
  private:
   using Steps = std::vector<ControlStep>;
+  static constexpr double kSilence_s = 0.5;
   // At rest (control_rest_checks.cpp). False: no other check can be made.
   bool check_arrival();
   void check_refusals();
@@ -47,8 +48,10 @@ class ControlConformance {
   void check_wrong_joints();
   void check_epoch();
 
-  /// Goes on for some time, and records the extremes of all commands (the members below).
+  /// Goes on for some time, and records the extremes of all commands (the members below). Throws PartGone if a control
+  /// that has written commands and states before writes none of them for this time, of kSilence_s or more.
   Steps go(double seconds);
+  void refuse_silence(const Steps& steps) const;
   /// Bends the body to a posture, one angle for each yaw joint, and waits until it must have been reached.
   Steps bend(const std::vector<double>& shape_rad, double rate_rad_s);
   /// Begins to move along an arc of this curvature, without waiting.
@@ -58,7 +61,7 @@ class ControlConformance {
                                           double from_s = 0.0);
   /// [rad] by how much any setpoint changed between the ticks from `from_s` on.
   [[nodiscard]] static double moved_rad(const Steps& steps, double from_s);
-  /// They point into `steps`, which must therefore not be a temporary.
+  /// They point into `steps`, which must therefore not be a temporary. Not null after go(kSilence_s) or longer.
   [[nodiscard]] static const msg::JointCommand* last_command(const Steps& steps);
   [[nodiscard]] static const msg::MotionStatus* last_state(const Steps& steps);
   static void last_command(Steps&&) = delete;
@@ -72,6 +75,7 @@ class ControlConformance {
   Report& report_;
   ControlHand hand_;
   std::vector<std::size_t> yaw_;
+  bool arrived_ = false;  ///< the control has written commands and states
   bool bends_ = false, travels_ = false;
   double rate_hz_ = 0.0;  ///< of the undulation at the speed of the profile, as motion_status states it
   // Checks of every command.

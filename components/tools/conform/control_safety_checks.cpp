@@ -156,6 +156,7 @@ void ControlConformance::check_epoch() {
     for (auto& step : go(1.0)) steps.push_back(std::move(step));
     return steps;
   };
+  arrived_ = false;  // silence is judged here
   const Steps first = play([] {});
   const double far_rad = [&] {
     for (const auto& step : first) {

@@ -78,6 +78,7 @@ int show(std::optional<std::uint32_t> domain, dashboard::WebOptions web) {
         board.server().dropped() == 1 ? "1 message was" : fmt::format("{} messages were", board.server().dropped()));
   if (g_signal != 0) return 128 + g_signal;
   fmt::print("{}\n", board.over());
+  std::fflush(stdout);
   return exit_status::kOk;
 }
 

@@ -89,7 +89,8 @@ std::uint32_t WebServer::add_channel(Channel channel) {
   channel.id = static_cast<std::uint32_t>(impl_->channels.size() + 1);
   impl_->channels.push_back(std::move(channel));
   const std::string text = advertise({impl_->channels.back()});
-  for (const auto& session : impl_->sessions) session->send_text(text);
+  const auto sessions = impl_->sessions;  // as in send()
+  for (const auto& session : sessions) session->send_text(text);
   return impl_->channels.back().id;
 }
 

@@ -13,7 +13,7 @@
 namespace constrictor::conform {
 namespace {
 
-Report examine_control(const std::string& fault, long interrupt_at = 0) {
+Report examine_control(const std::string& fault, long interrupt_at = 0, std::string* gone = nullptr) {
   Setup setup;
   setup.robot_file = testing::robot_path("mamba");
   const RobotModel robot = load_robot(setup.robot_file);
@@ -22,7 +22,9 @@ Report examine_control(const std::string& fault, long interrupt_at = 0) {
   Report report(control_checks());
   try {
     ControlConformance(port, robot, profile, report).run();
-  } catch (const PartGone&) {}
+  } catch (const PartGone& error) {
+    if (gone != nullptr) *gone = error.what();
+  }
   return report;
 }
 
@@ -36,6 +38,18 @@ TEST(ControlConformance, AnInterruptLeavesTheRestNotChecked) {
   const Report report = examine_control("", 500);
   EXPECT_GT(report.count(Verdict::kPassed), 5u);
   EXPECT_GT(report.count(Verdict::kNotChecked), 5u);
+  EXPECT_FALSE(report.conforms());
+}
+
+TEST(ControlConformance, AControlThatFallsSilentEndsTheChecksWithTheReason) {
+  std::string gone;
+  Report report = examine_control("falls_silent", 0, &gone);
+  EXPECT_EQ(gone.find("control has stopped writing joint_command: none came for "), 0u) << gone;
+  EXPECT_EQ(report.check("rests").verdict, Verdict::kPassed);
+  EXPECT_EQ(report.check("stop").verdict, Verdict::kNotChecked);
+  EXPECT_FALSE(report.conforms());
+  report = examine_control("loses_its_state", 0, &gone);
+  EXPECT_EQ(gone.find("control has stopped writing motion_status: none came for "), 0u) << gone;
   EXPECT_FALSE(report.conforms());
 }
 
