@@ -1,4 +1,10 @@
 // The dashboard beside `constrictor replay`: viewers play, seek and step a recording.
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstring>
+
 #include "integration/dashboard_viewer.hpp"
 #include "integration/run_command_fixture.hpp"
 #include "recording/message_cdr.hpp"
@@ -71,6 +77,32 @@ TEST_F(DashboardReplay, RefusesWhatARecordingCannotDoAndEndsWithTheReplay) {
   Process alone = command({"dashboard", "--port", "0"});
   EXPECT_EQ(alone.wait(20s), exit_status::kSoftware);
   EXPECT_NE(alone.errors().find("no run on this host"), std::string::npos) << alone.errors();
+}
+
+/// Leaves the file of a socket on which nobody listens, as a replay that is killed does.
+void leave_socket(const fs::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+  const int socket = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+  EXPECT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(::listen(socket, 1), 0);
+  ::close(socket);
+}
+
+TEST_F(RunCommand, ARunInTheDomainOfAKilledReplayIsNotTakenForTheReplay) {
+  environment_["XDG_RUNTIME_DIR"] = dir_.string();
+  Process run = this->run(100000, "r", {"--pace", "realtime"});
+  const std::string domain = std::to_string(domain_of(run));
+  leave_socket(dir_ / "constrictor" / ("replay-" + domain + ".sock"));
+  Process status = command({"status"});
+  EXPECT_EQ(status.wait(20s), exit_status::kOk);
+  EXPECT_EQ(status.output().find("replay of"), std::string::npos) << status.output();
+  for (const char* name : {"pause", "end"}) {
+    Process one = command({name, "--run", domain});
+    EXPECT_EQ(one.wait(20s), exit_status::kOk) << name << one.errors();
+  }
+  EXPECT_TRUE(run.wait(20s)) << run.errors();
 }
 
 }  // namespace

@@ -62,6 +62,24 @@ bool send(int socket, const json& packet) {
   return ::send(socket, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == static_cast<ssize_t>(text.size());
 }
 
+/// A socket that is connected to the replay in `domain`; -1 with errno if nobody listens.
+int connected(std::uint32_t domain, int flags = 0) {
+  const sockaddr_un address = address_of(socket_file(domain));
+  const int socket = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | flags, 0);
+  if (socket < 0 || ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return socket;
+  const int error = errno;
+  ::close(socket);
+  errno = error;
+  return -1;
+}
+
+/// Whether a replay listens in `domain`. A replay that was killed leaves its socket file, and a run may use its domain.
+bool listens(std::uint32_t domain) {
+  const int socket = connected(domain, SOCK_NONBLOCK);
+  if (socket >= 0) ::close(socket);
+  return socket >= 0 || errno == EAGAIN;  // so many programs connect that one more would have to wait
+}
+
 }  // namespace
 
 ReplayRequest replay_request_of(const json& packet) {
@@ -137,13 +155,11 @@ void ReplayServer::poll(const std::function<ReplayState(const ReplayRequest&)>& 
   }
 }
 
-ReplayClient::ReplayClient(std::uint32_t domain) : socket_(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0)) {
-  const sockaddr_un address = address_of(socket_file(domain));
-  if (socket_ >= 0 && ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return;
+ReplayClient::ReplayClient(std::uint32_t domain) : socket_(connected(domain)) {
+  if (socket_ >= 0) return;
   const int error = errno;
-  if (socket_ >= 0) ::close(socket_);
   throw std::runtime_error(
-      fmt::format("no replay in DDS domain {}: {}: {}", domain, address.sun_path, std::strerror(error)));
+      fmt::format("no replay in DDS domain {}: {}: {}", domain, socket_file(domain).string(), std::strerror(error)));
 }
 
 ReplayClient::~ReplayClient() { ::close(socket_); }
@@ -170,7 +186,7 @@ std::vector<std::uint32_t> live_replays() {
   for (const auto& entry : fs::directory_iterator(run_directory())) {
     std::uint32_t domain = 0;
     if (std::sscanf(entry.path().filename().c_str(), "replay-%u.sock", &domain) == 1 &&
-        entry.path() == socket_file(domain) && domain_claimed(domain))
+        entry.path() == socket_file(domain) && listens(domain))
       domains.push_back(domain);
   }
   std::sort(domains.begin(), domains.end());
