@@ -24,11 +24,6 @@ OverviewView::OverviewView(const Scene& scene, const OverviewConfig& options, co
       heading_rad_(side_heading(scene) + options.heading_rad),
       renderer_(scene, render) {
   look_at_bodies({});
-  if (options.inset > 0.0) {
-    RenderOptions smaller = render;
-    smaller.shadow_map_size /= 2;
-    inset_renderer_ = std::make_unique<Renderer>(scene, smaller);
-  }
 }
 
 void OverviewView::look_at_bodies(const ScenePoses& poses) {
@@ -49,7 +44,7 @@ std::vector<std::uint8_t>& OverviewView::draw(const msg::WorldState& world) {
 }
 
 void OverviewView::draw_inset(const ScenePoses& poses) {
-  if (!inset_renderer_ || poses.X_WModule.empty()) return;
+  if (options_.inset <= 0.0 || poses.X_WModule.empty()) return;
   constexpr double kInsetElevation_rad = 0.75;
   constexpr double kInsetMargin = 0.06;
   constexpr int kBorder = 2;
@@ -59,7 +54,9 @@ void OverviewView::draw_inset(const ScenePoses& poses) {
   const int height = static_cast<int>(camera_.height * options_.inset);
   if (width < 8 || height < 8) return;
   const PinholeCamera camera = fit_view(body, heading_rad_, kInsetElevation_rad, 0.5, width, height, kInsetMargin);
-  const std::vector<std::uint8_t>& inset = inset_renderer_->draw(poses, camera, shadow_region_of(body));
+  ShadowRegion region = shadow_region_of(body);
+  region.coarse = true;
+  const std::vector<std::uint8_t>& inset = renderer_.draw(poses, camera, region);
   const int top = camera_.height - height - 2 * kBorder;
   for (int row = -kBorder; row < height + kBorder; ++row) {
     std::uint8_t* target = rgb_.data() + static_cast<std::ptrdiff_t>(3) * (top + kBorder + row - 1) * camera_.width;

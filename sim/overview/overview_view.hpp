@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "constrictor/messages.hpp"
@@ -42,7 +41,6 @@ class OverviewView {
   PinholeCamera camera_;
   ShadowRegion shadow_;
   Renderer renderer_;
-  std::unique_ptr<Renderer> inset_renderer_;  // null: there is no close-up
   std::vector<std::uint8_t> rgb_;
 };
 

@@ -16,6 +16,7 @@ std::runtime_error no_framebuffer(int width, int height) {
 }  // namespace
 
 void ShadowMap::build(int size_texels) {
+  size_ = size_texels;
   const int size = size_texels > 0 ? size_texels : 1;
   texture_ = GlTexture::create();
   glBindTexture(GL_TEXTURE_2D, texture_.get());
@@ -83,6 +84,12 @@ const std::vector<std::uint8_t>& ImageTarget::read() {
   for (std::size_t pixel = 0; pixel < last; ++pixel) std::memcpy(&rgb_[3 * pixel], &rgba_[4 * pixel], 4);
   std::memcpy(&rgb_[3 * last], &rgba_[4 * last], 3);
   return rgb_;
+}
+
+ImageTarget& ImageTargets::of_size(int width, int height, int samples) {
+  if (!targets_[newest_].has_size(width, height)) newest_ = 1 - newest_;
+  targets_[newest_].resize(width, height, samples);
+  return targets_[newest_];
 }
 
 }  // namespace constrictor

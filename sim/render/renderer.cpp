@@ -1,6 +1,6 @@
 #include "sim/render/renderer.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -42,6 +42,7 @@ void begin_pass(const GlFramebuffer& framebuffer, int width, int height) {
 struct Shadows {
   const GlTexture& map;
   PixelBox on_ground;
+  int size;  ///< [texel] edge of the map; 0: no shadows
 };
 
 }  // namespace
@@ -63,9 +64,13 @@ class Renderer::Implementation {
   /// Chooses the solids for the next draw_solids(). Returns whether there is one.
   bool choose_solids(const Needed& needed);
   void draw_solids() const;
-  Shadows draw_shadow_map(const PinholeCamera& camera, const ViewVolume& view, const Eigen::Matrix4f& shadow);
-  void draw_image(const PinholeCamera& camera, const ViewVolume& view, const Eigen::Matrix4f& shadow,
-                  const Shadows& shadows);
+  /// [texel] edge of the shadow map; 0: no shadows.
+  [[nodiscard]] int shadow_map_size(const ShadowRegion& region) const {
+    return region.coarse ? options_.shadow_map_size / 2 : options_.shadow_map_size;
+  }
+  Shadows draw_shadow_map(const PinholeCamera& camera, const ViewVolume& view, const Eigen::Matrix4f& shadow, int size);
+  void draw_image(const ImageTarget& target, const PinholeCamera& camera, const ViewVolume& view,
+                  const Eigen::Matrix4f& shadow, const Shadows& shadows);
   /// `use` begins to draw with a program.
   void draw_flats(const std::function<void(const GlProgram&)>& use, const Needed& visible, const PixelBox& image,
                   const PixelBox& shadowed);
@@ -79,8 +84,8 @@ class Renderer::Implementation {
   Solids head_, modules_, cylinders_, boxes_;
   std::vector<Flat> flats_;  // painted in this order
   GlTexture pattern_;
-  ShadowMap shadow_map_, no_shadows_;
-  ImageTarget target_;
+  ShadowMap shadow_map_, coarse_shadow_map_, no_shadows_;
+  ImageTargets targets_;
   bool has_drawn_ = false;
 };
 
@@ -162,11 +167,11 @@ void Renderer::Implementation::draw_solids() const {
 }
 
 Shadows Renderer::Implementation::draw_shadow_map(const PinholeCamera& camera, const ViewVolume& view,
-                                                  const Eigen::Matrix4f& shadow) {
-  const Shadows none{no_shadows_.texture(), {}};
-  if (options_.shadow_map_size == 0) return none;
+                                                  const Eigen::Matrix4f& shadow, int size) {
+  const Shadows none{no_shadows_.texture(), {}, size};
+  if (size == 0) return none;
   // A surface looks up to kNormalOffset_m and some texels beside its own place.
-  const double texel_m = 2.0 / (options_.shadow_map_size * shadow.cast<double>().row(0).head<3>().norm());
+  const double texel_m = 2.0 / (size * shadow.cast<double>().row(0).head<3>().norm());
   const double slack_m = kNormalOffset_m + (options_.shadow_taps > 1 ? 4.0 : 2.0) * texel_m;
   const ShadowVolume volume(shadow, scene_.light.direction, slack_m);
   ShadowedGround ground(camera, kNear_m, shadow, slack_m);
@@ -176,7 +181,10 @@ Shadows Renderer::Implementation::draw_shadow_map(const PinholeCamera& camera, c
     return true;
   };
   if (!choose_solids(needed) && !options_.draw_everything) return none;
-  begin_pass(shadow_map_.framebuffer(), options_.shadow_map_size, options_.shadow_map_size);
+  const bool coarse = size != options_.shadow_map_size;
+  if (coarse && coarse_shadow_map_.size() == 0) coarse_shadow_map_.build(size);
+  const ShadowMap& map = coarse ? coarse_shadow_map_ : shadow_map_;
+  begin_pass(map.framebuffer(), size, size);
   glEnable(GL_DEPTH_CLAMP);
   glDisable(GL_CULL_FACE);
   glEnable(GL_POLYGON_OFFSET_FILL);
@@ -187,12 +195,13 @@ Shadows Renderer::Implementation::draw_shadow_map(const PinholeCamera& camera, c
   draw_solids();
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDisable(GL_DEPTH_CLAMP);
-  return {shadow_map_.texture(), options_.draw_everything ? whole_image(camera) : ground.pixels()};
+  return {map.texture(), options_.draw_everything ? whole_image(camera) : ground.pixels(), size};
 }
 
-void Renderer::Implementation::draw_image(const PinholeCamera& camera, const ViewVolume& view,
-                                          const Eigen::Matrix4f& shadow, const Shadows& shadows) {
-  begin_pass(target_.framebuffer(), camera.width, camera.height);
+void Renderer::Implementation::draw_image(const ImageTarget& target, const PinholeCamera& camera,
+                                          const ViewVolume& view, const Eigen::Matrix4f& shadow,
+                                          const Shadows& shadows) {
+  begin_pass(target.framebuffer(), camera.width, camera.height);
   glEnable(GL_CULL_FACE);
   glFrontFace(GL_CW);
   const auto display = [](float radiance) { return std::sqrt(radiance); };
@@ -214,8 +223,7 @@ void Renderer::Implementation::draw_image(const PinholeCamera& camera, const Vie
     set_uniform(program, "ambient", static_cast<float>(scene_.light.ambient));
     set_uniform(program, "eye", Eigen::Vector3f(camera.X_WC.translation().cast<float>()));
     set_uniform(program, "horizon", kHorizon);
-    if (options_.shadow_map_size > 0)
-      set_uniform(program, "shadow_texel", 1.0F / static_cast<float>(options_.shadow_map_size));
+    if (shadows.size > 0) set_uniform(program, "shadow_texel", 1.0F / static_cast<float>(shadows.size));
   };
   use(solid_program_);
   set_uniform(solid_program_, "normal_offset", static_cast<float>(kNormalOffset_m));
@@ -260,13 +268,13 @@ void Renderer::Implementation::draw_flats(const std::function<void(const GlProgr
 const std::vector<std::uint8_t>& Renderer::Implementation::draw(const ScenePoses& poses, const PinholeCamera& camera,
                                                                 const ShadowRegion& region) {
   const ContextScope scope(context_);
-  target_.resize(camera.width, camera.height, options_.samples);
+  ImageTarget& target = targets_.of_size(camera.width, camera.height, options_.samples);
   place(poses);
-  const Eigen::Matrix4f shadow =
-      shadow_from_world(scene_.light.direction, region, options_.shadow_map_size > 0 ? options_.shadow_map_size : 1);
+  const int shadow_size = shadow_map_size(region);
+  const Eigen::Matrix4f shadow = shadow_from_world(scene_.light.direction, region, std::max(shadow_size, 1));
   const ViewVolume view(camera, kNear_m);
-  draw_image(camera, view, shadow, draw_shadow_map(camera, view, shadow));
-  const std::vector<std::uint8_t>& rgb = target_.read();
+  draw_image(target, camera, view, shadow, draw_shadow_map(camera, view, shadow, shadow_size));
+  const std::vector<std::uint8_t>& rgb = target.read();
   check_gl("drawing");
   // The first frame compiled the shaders.
   if (!std::exchange(has_drawn_, true)) release_shader_compiler();

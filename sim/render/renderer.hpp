@@ -26,6 +26,7 @@ struct RenderOptions {
 struct ShadowRegion {
   Eigen::Vector2d centre_m{0.0, 0.0};
   double radius_m = 3.0;
+  bool coarse = false;  ///< the shadow map has half of RenderOptions::shadow_map_size: for small images
 };
 
 /// Draws one scene. The first frame takes some tenths of a second if the shaders are not in the cache. A frame is a

@@ -1,10 +1,12 @@
 #include "sim/report/scene_pictures.hpp"
 
 #include <fstream>
+#include <future>
 #include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "constrictor/reflect.hpp"
 #include "constrictor/sha256.hpp"
@@ -41,15 +43,23 @@ std::shared_ptr<const msg::WorldState> read_world(const std::filesystem::path& f
 void draw_scene_pictures(const std::filesystem::path& folder, const std::vector<Moment>& moments,
                          const msg::SceneDescription& scene, const Eigen::Vector3d& head_camera_m, LostFiles& lost) {
   std::unique_ptr<LazyView> view;  // made for the first picture, because this compiles shaders
+  std::future<void> written;       // the picture before, which is compressed while the next one is drawn
+  const auto finish = [&] {
+    if (written.valid()) lost.attempt([&] { written.get(); });
+  };
   for (const Moment& moment : moments) {
     const MomentFiles files(folder, moment);
     const auto world = read_world(files.world);
     if (!world) continue;
     if (!view) view = make_view_lazily(scene, head_camera_m);
-    const std::vector<std::uint8_t>& rgb = view->draw(*world);
-    const std::string png = encode_png(view->width(), view->height(), rgb.data());
-    lost.attempt([&] { replace_file(files.scene, png); });
+    std::vector<std::uint8_t> rgb = view->draw(*world);
+    finish();
+    written = std::async(std::launch::async,
+                         [file = files.scene, width = view->width(), height = view->height(), rgb = std::move(rgb)] {
+                           replace_file(file, encode_png(width, height, rgb.data()));
+                         });
   }
+  finish();
 }
 
 void remove_work_files(const std::filesystem::path& folder) {
