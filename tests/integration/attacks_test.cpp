@@ -11,15 +11,16 @@ namespace {
 
 class Attacks : public AttackedRun {
  protected:
-  static constexpr long kTicks = 400;
+  /// Of the run, which has twice the pace of real time.
+  [[nodiscard]] virtual long ticks() const { return 400; }
 
   void SetUp() override {
-    Process reference = run(kTicks, "reference", {"--in-process"});
+    Process reference = run(ticks(), "reference", {"--in-process"});
     ASSERT_EQ(reference.wait(60s), exit_status::kOk) << reference.errors();
-    launcher_.emplace(run(kTicks, "attacked", {"--pace", "2x"}));
-    const unsigned domain = domain_of(*launcher_);
-    ASSERT_GT(domain, 0u) << launcher_->errors();
-    attacker_.emplace(domain);
+    launcher_.emplace(run(ticks(), "attacked", {"--pace", "2x"}));
+    domain_ = domain_of(*launcher_);
+    ASSERT_GT(domain_, 0u) << launcher_->errors();
+    attacker_.emplace(domain_);
     ASSERT_TRUE(attacker_->ready_to_forge(5)) << launcher_->output() << launcher_->errors();
   }
   /// Ends the test: the run must have the result of the run that was left alone.
@@ -32,6 +33,7 @@ class Attacks : public AttackedRun {
     expect_nobody_left();
   }
 
+  unsigned domain_ = 0;
   std::optional<Process> launcher_;
   std::optional<Attacker> attacker_;
 };
@@ -82,31 +84,47 @@ TEST_F(Attacks, ForgedAndReplayedMessagesOfMembersDoNotChangeTheRun) {
   std::printf("forged messages: same result, logs of %ju bytes\n", log);
 }
 
+/// The run goes on for 40 s unless it is told to hurry.
+class LongAttack : public Attacks {
+ protected:
+  [[nodiscard]] long ticks() const override { return 4000; }
+};
+
 // Half of them name no component of the roster, the others a member with ever higher incarnations.
-TEST_F(Attacks, FiftyThousandHellosCostNeitherMemoryNorLogLinesNorAnswers) {
+TEST_F(LongAttack, FiftyThousandHellosCostNeitherMemoryNorLogLinesNorAnswers) {
   Attacker& attacker = *attacker_;
+  const auto refused = dds::Reader<msg::Refused>::member(attacker.get(), wire::kRefused);
+  const auto flood = [&](int from) {
+    std::size_t answers = 0;
+    for (int i = from; i < from + 50'000; ++i) {
+      msg::Hello message = attacker.known.at("navigation");
+      dds::set_text(message.component, i % 2 == 0 ? "stranger_" + std::to_string(i) : "navigation");
+      message.incarnation = 1000 + static_cast<std::uint32_t>(i);
+      attacker.hello.write(message);
+      refused.take([&](const msg::Refused&) { ++answers; });
+    }
+    dds_wait_for_acks(attacker.hello.get(), DDS_SECS(20));
+    return answers;
+  };
+  // On a busy machine, thousands of messages wait in each process, whose heap does not shrink afterwards. What is kept
+  // for good costs memory each time.
+  flood(0);
   const long before_kib = memory_kib();
   const auto log_before = log_size("attacked");
-  const auto refused = dds::Reader<msg::Refused>::member(attacker.get(), wire::kRefused);
-  std::size_t answers = 0;
   const auto began = std::chrono::steady_clock::now();
-  for (int i = 0; i < 50'000; ++i) {
-    msg::Hello message = attacker.known.at("navigation");
-    dds::set_text(message.component, i % 2 == 0 ? "stranger_" + std::to_string(i) : "navigation");
-    message.incarnation = 1000 + static_cast<std::uint32_t>(i);
-    attacker.hello.write(message);
-    refused.take([&](const msg::Refused&) { ++answers; });
-  }
+  const std::size_t answers = flood(50'000);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  dds_wait_for_acks(attacker.hello.get(), DDS_SECS(20));
   const long grown_kib = memory_kib() - before_kib;
   const auto logged = log_size("attacked") - log_before;
+  ASSERT_TRUE(launcher_->running()) << "the memory of processes that have ended says nothing";
   std::printf("50000 Hellos in %.1f s: memory of 5 processes %+ld KiB, logs %ju bytes, %zu answers\n", wall_s,
               grown_kib, logged, answers);
   // For comparison: a participant that keeps 25,000 instances of Hello needs about 20 MB, in each process.
   EXPECT_LT(grown_kib, 20'000);
   EXPECT_LT(logged, 100'000u);
-  EXPECT_LT(answers, 16 + 10 * static_cast<std::size_t>(wall_s + 21));
+  EXPECT_LT(answers, 16 + 10 * static_cast<std::size_t>(wall_s + 1));
+  Process hurry = command({"pace", "lockstep", "--run", std::to_string(domain_)});
+  EXPECT_EQ(hurry.wait(20s), exit_status::kOk) << hurry.errors();
   expect_same_result();
 }
 

@@ -173,6 +173,18 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
             0u);
   EXPECT_EQ(command({"param", "set", "navigation.nothing", "1"}), 1);
   EXPECT_EQ(output_.find("param: refused: no component announces a parameter 'navigation.nothing'"), 0u) << output_;
+  EXPECT_EQ(command({"param", "set", "navigation.travel.sped_m_s", "1"}), 1);
+  EXPECT_NE(output_.find("did you mean 'navigation.travel.speed_m_s'?"), std::string::npos) << output_;
+  // One that the next run can have, with a number, with a text, and to be read.
+  for (const std::vector<std::string>& fixed : {std::vector<std::string>{"set", "report.settle_s", "3"},
+                                                {"set", "report.settle_s", "long"},
+                                                {"get", "report.settle_s"}}) {
+    std::vector<std::string> arguments = {"param"};
+    arguments.insert(arguments.end(), fixed.begin(), fixed.end());
+    EXPECT_EQ(command(arguments), 1) << output_;
+    EXPECT_NE(output_.find("cannot change while the run goes on; accepted in a configuration file"), std::string::npos)
+        << output_;
+  }
   EXPECT_EQ(command({"param", "set", kFrequency, "0.8", "--at-tick", "1"}), 1);
   EXPECT_NE(output_.find("found 1, accepted "), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "set", "navigation.line_tracker.lost_after_images", "3.5"}), 1);

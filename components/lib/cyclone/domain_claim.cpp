@@ -52,18 +52,26 @@ int try_name(std::uint32_t domain) {
   return -1;
 }
 
-/// True if the discovery port of the domain's first participant is in use: by another user's run, or by a program that
-/// claims no domain. Source: RTPS 2.3, 9.6.1.1: port 7400 + 250 domain + 10 + 2 participant.
-bool domain_in_use(std::uint32_t domain) {
+/// True if a port of UDP is in use.
+bool port_in_use(std::uint32_t port) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket < 0) return false;
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_ANY);
-  address.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain + 10));
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
   const bool taken = ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0;
   ::close(socket);
   return taken;
+}
+
+/// True if the discovery port of one of the domain's first participants is in use: by another user's run, by a program
+/// that claims no domain, or by a dashboard that shows the end of a run. Source: RTPS 2.3, 9.6.1.1.
+bool domain_in_use(std::uint32_t domain) {
+  constexpr std::uint32_t kParticipants = 16;
+  for (std::uint32_t participant = 0; participant < kParticipants; ++participant)
+    if (port_in_use(7400 + 250 * domain + 10 + 2 * participant)) return true;
+  return false;
 }
 
 /// The file of a published DDS configuration.

@@ -107,6 +107,15 @@ template <class T>
 class Reader {
  public:
   Reader() = default;
+  ~Reader() = default;
+  Reader(Reader&&) noexcept = default;
+  Reader& operator=(Reader&& other) noexcept {
+    entity_ = std::move(other.entity_);  // first: the reader before may call its own passes_ until it is deleted
+    passes_ = std::move(other.passes_);
+    return *this;
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
   static Reader member(dds_entity_t participant, const std::string& topic, const std::string& user_data = {}) {
     return Reader(create_member_reader(participant, descriptor<T>(), topic, user_data));
   }

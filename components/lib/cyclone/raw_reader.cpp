@@ -3,6 +3,7 @@
 #include <dds/ddsi/ddsi_serdata.h>
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "cyclone/raw_type.hpp"
@@ -36,9 +37,15 @@ void RawReader::take(const std::function<void(const RawSample&)>& use) const {
     std::array<dds_sample_info_t, kBatch> infos{};
     const int count =
         check(dds_takecdr(reader_.get(), data.data(), kBatch, infos.data(), DDS_ANY_STATE), "dds_takecdr");
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const std::span<ddsi_serdata*> samples(data.data(), static_cast<std::size_t>(count));
+    struct Batch {
+      std::span<ddsi_serdata*> samples;
+      ~Batch() {
+        for (ddsi_serdata* sample : samples) ddsi_serdata_unref(sample);
+      }
+    } const batch{samples};  // also if `use` throws
+    for (std::size_t i = 0; i < samples.size(); ++i) {
       if (infos[i].valid_data) use({bytes_of_raw_sample(data[i]), infos[i].source_timestamp});
-      ddsi_serdata_unref(data[i]);
     }
     if (count < static_cast<int>(kBatch)) return;
   }

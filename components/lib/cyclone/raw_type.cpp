@@ -1,14 +1,21 @@
+#define DDS_HAS_TYPE_DISCOVERY 1  // the Debian library is built with it; its headers expect their user to define it
 #include "cyclone/raw_type.hpp"
 
 #include <dds/ddsi/ddsi_keyhash.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
+#include <dds/ddsi/ddsi_xqos.h>
 #include <dds/ddsi/q_radmin.h>
+
+// After ddsi_xqos.h, whose types they use without including it.
+#include <dds/ddsi/ddsi_typelib.h>
+#include <dds/ddsi/ddsi_xt_impl.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
+#include <utility>
 #include <vector>
 
 // An application of Cyclone may define types of its own as tables of functions. In the type defined here, a sample is
@@ -24,6 +31,7 @@ using Slack = std::array<void*, 8>;
 struct RawType {
   ddsi_sertype base;
   Slack slack;
+  std::shared_ptr<const void> type_info;  ///< of create_described_topic()
 };
 
 struct RawData {
@@ -130,16 +138,48 @@ ddsi_sertype_ops make_type_ops() {
 
 const ddsi_sertype_ops kTypeOps = make_type_ops();
 
-}  // namespace
+/// What Cyclone DDS knows of the type, without the types that it contains: they are found by the type's own
+/// description.
+ddsi_sertype_ops make_described_type_ops() {
+  static const auto info_of = [](const ddsi_sertype* type) {
+    return static_cast<ddsi_typeinfo_t*>(const_cast<void*>(reinterpret_cast<const RawType*>(type)->type_info.get()));
+  };
+  ddsi_sertype_ops ops = make_type_ops();
+  ops.equal = [](const ddsi_sertype* a, const ddsi_sertype* b) { return a == b; };
+  ops.type_id = [](const ddsi_sertype* type, ddsi_typeid_kind_t kind) {
+    return ddsi_typeinfo_typeid(info_of(type), kind);
+  };
+  ops.type_info = [](const ddsi_sertype* type) { return ddsi_typeinfo_dup(info_of(type)); };
+  ops.type_map = [](const ddsi_sertype*) {
+    return static_cast<ddsi_typemap_t*>(std::memset(dds_alloc(sizeof(ddsi_typemap_t)), 0, sizeof(ddsi_typemap_t)));
+  };
+  return ops;
+}
 
-RawTopic create_raw_topic(dds_entity_t participant, const std::string& name, const std::string& type_name, bool keyed) {
-  auto* type = new RawType{};
-  ddsi_sertype_init(&type->base, type_name.c_str(), &kTypeOps, &kDataOps.base, !keyed);
+const ddsi_sertype_ops kDescribedTypeOps = make_described_type_ops();
+
+RawTopic make_topic(dds_entity_t participant, const std::string& name, std::unique_ptr<RawType> type) {
   type->base.allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1 | DDS_DATA_REPRESENTATION_FLAG_XCDR2;
-  ddsi_sertype* base = &type->base;
+  ddsi_sertype* base = &type.release()->base;
   const dds_entity_t topic = dds_create_topic_sertype(participant, name.c_str(), &base, nullptr, nullptr, nullptr);
   if (topic < 0) ddsi_sertype_unref(base);
   return {Entity(topic, "dds_create_topic_sertype"), base};
+}
+
+}  // namespace
+
+RawTopic create_raw_topic(dds_entity_t participant, const std::string& name, const std::string& type_name, bool keyed) {
+  auto type = std::make_unique<RawType>();
+  ddsi_sertype_init(&type->base, type_name.c_str(), &kTypeOps, &kDataOps.base, !keyed);
+  return make_topic(participant, name, std::move(type));
+}
+
+RawTopic create_described_topic(dds_entity_t participant, const std::string& name, const std::string& type_name,
+                                std::shared_ptr<const void> type_info) {
+  auto type = std::make_unique<RawType>();
+  ddsi_sertype_init(&type->base, type_name.c_str(), &kDescribedTypeOps, &kDataOps.base, true);
+  type->type_info = std::move(type_info);
+  return make_topic(participant, name, std::move(type));
 }
 
 ddsi_serdata* make_raw_sample(const ddsi_sertype* type, std::span<const std::uint8_t> bytes) {

@@ -39,10 +39,10 @@ void TopicTap::read(const Endpoint& writer) {
   const RawQos least{reading.qos.reliable && offered.reliable, reading.qos.transient_local && offered.transient_local,
                      everything_};
   if (least.reliable == reading.qos.reliable && least.transient_local == reading.qos.transient_local) return;
-  reading.lost_before += reading.reader->lost();
+  if (reading.reader) reading.lost_before += reading.reader->lost();
   reading.reader.reset();
-  reading.qos = least;
   reading.reader = std::make_unique<RawReader>(participant_, writer, least);
+  reading.qos = least;
   wait_set_.attach(reading.reader->get());
 }
 

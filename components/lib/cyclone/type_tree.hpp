@@ -59,6 +59,9 @@ class TypeTree {
 
  private:
   explicit TypeTree(std::shared_ptr<const TypeNode> root);
+  /// `type_info`: a dds_typeinfo_t of a type to which a topic of this process refers.
+  static std::unique_ptr<TypeTree> resolve(dds_entity_t participant, const void* type_info,
+                                           std::chrono::milliseconds bound);
   std::shared_ptr<const TypeNode> root_;
 };
 

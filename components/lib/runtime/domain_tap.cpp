@@ -1,5 +1,9 @@
 #include "runtime/domain_tap.hpp"
 
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
 #include "constrictor/descriptors.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/domain.hpp"
@@ -22,7 +26,13 @@ DomainTap::DomainTap(std::uint32_t domain, const std::string& identity, dds::Top
 #define CONSTRICTOR_UNCOUNTED_TOPIC(constant, Type, name, ...) expect(name, dds::descriptor<msg::Type>());
 #include "constrictor/topic_table.def"
 #undef CONSTRICTOR_UNCOUNTED_TOPIC
-  thread_ = std::thread([this] { loop(); });
+  thread_ = std::thread([this] {
+    try {
+      loop();
+    } catch (const std::exception& error) {  // the run goes on; what has arrived is still recorded
+      std::fprintf(stderr, "recording: no more topics of the domain: %s\n", error.what());
+    }
+  });
 }
 
 DomainTap::~DomainTap() {

@@ -136,7 +136,14 @@ int with_json(const std::string& name, const ParamOptions& options, int (*run)(c
   }
 }
 
+/// What to do about a name that no component announces; empty for one that is announced.
+std::string advice_for_unknown(const std::string& name, const ParameterView& view) {
+  if (view.parameters.empty() || view.parameters.contains(name)) return {};
+  return is_in_configuration(name) ? fmt::format("; it {}", why_fixed(name)) : did_you_mean(name, view.parameters);
+}
+
 Refused no_such_parameter(const std::string& name, const ParameterView& view) {
+  if (is_in_configuration(name)) return Refused(fmt::format("{} {}", name, why_fixed(name)));
   return Refused(fmt::format("no parameter '{}'{} (`constrictor param list` lists all)", name,
                              did_you_mean(name, view.parameters)));
 }
@@ -186,10 +193,12 @@ int set_all(const ParamOptions& options, std::uint32_t domain, const std::vector
                : error.cause() == CommandError::Cause::kInterrupted ? interrupt_status()
                                                                     : exit_status::kWaitedTooLong;
       const bool refused = error.cause() == CommandError::Cause::kRefused;
+      std::string why = error.what();
+      if (refused) why += advice_for_unknown(name, read_parameters(client.participant()));
       // A request without an answer is not refused: a run that is paused may still obey it.
-      json.push_back({{"name", name}, {"value", value}, {refused ? "refused" : "no_answer", error.what()}});
+      json.push_back({{"name", name}, {"value", value}, {refused ? "refused" : "no_answer", why}});
       if (!refused || !options.view.json)
-        std::fprintf(stderr, "param: %s%s\n", refused ? "refused: " : "", error.what());
+        std::fprintf(stderr, "param: %s%s\n", refused ? "refused: " : "", why.c_str());
       if (!refused) {
         client.flush();
         std::fprintf(stderr, "  %zu of %zu parameters were set; authority has not changed\n", i, count);

@@ -63,13 +63,7 @@ class Reader {
     if (*value != coming_value(p)) values_.push_back({name, *value, found.text});
   }
   [[nodiscard]] std::string why_not(const std::string& name) const {
-    const std::string component = name.substr(0, name.find('.'));
-    if (is_fixed_(name)) {
-      return fmt::format(
-          "cannot change while the run goes on; accepted in a configuration file, for the next run: "
-          "`constrictor run --config {}=FILE`",
-          component);
-    }
+    if (is_fixed_(name)) return why_fixed(name);
     return "found no such parameter, accepted those of `constrictor param list`" + did_you_mean(name, view_.parameters);
   }
 
@@ -115,11 +109,22 @@ std::vector<ParameterValue> read_parameter_file(const std::string& text, const s
   return reader.take_values();
 }
 
+std::string why_fixed(const std::string& name) {
+  return fmt::format(
+      "cannot change while the run goes on; accepted in a configuration file, for the next run: "
+      "`constrictor run --config {}=FILE`",
+      name.substr(0, name.find('.')));
+}
+
 bool is_in_configuration(const std::string& name) {
   const std::string component = name.substr(0, name.find('.'));
   if (component.empty() || component.find('/') != std::string::npos) return false;
-  const auto file = data_path(std::filesystem::path("components") / component / (component + ".yaml"));
   std::error_code error;
+  std::filesystem::path file;
+  for (const char* folder : {"components", "sim"}) {
+    file = data_path(std::filesystem::path(folder) / component / (component + ".yaml"));
+    if (std::filesystem::exists(file, error)) break;
+  }
   if (!std::filesystem::exists(file, error)) return false;
   try {
     YAML::Node node = YAML::LoadFile(file.string());

@@ -31,4 +31,7 @@ struct ParameterValue {
 /// Whether the default configuration of the component that the name begins with has this key.
 [[nodiscard]] bool is_in_configuration(const std::string& name);
 
+/// Why a parameter that is_in_configuration(), but that no component announces, is refused, and what to do.
+[[nodiscard]] std::string why_fixed(const std::string& name);
+
 }  // namespace constrictor::cli

@@ -115,6 +115,10 @@ Dashboard::~Dashboard() = default;
 
 void Dashboard::serve() {
   tap_.discover();
+  pass_news();
+}
+
+void Dashboard::pass_news() {
   tap_.wait(10ms);
   tap_.take([this](const dds::TopicTap::Topic& topic, const dds::RawSample& sample) { pass_on(topic, sample); });
   take_typed();
@@ -249,7 +253,8 @@ void Dashboard::change(WebServer::Change wish) {
 
 void Dashboard::say_farewell() {
   server_.tell_end(over());
-  for (const auto end = std::chrono::steady_clock::now() + kFarewell; std::chrono::steady_clock::now() < end;) serve();
+  for (const auto end = std::chrono::steady_clock::now() + kFarewell; std::chrono::steady_clock::now() < end;)
+    pass_news();  // new topics would be those of another run in this domain
 }
 
 void Dashboard::show() {

@@ -33,6 +33,8 @@ class Dashboard {
   [[nodiscard]] const WebServer& server() const { return server_; }
 
  private:
+  /// serve(), without looking for new topics.
+  void pass_news();
   struct Readers;
   void pass_on(const dds::TopicTap::Topic& topic, const dds::RawSample& sample);
   void take_typed();

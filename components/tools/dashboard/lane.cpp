@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -74,6 +75,7 @@ void Lane::obey(const WebServer::Call& call) {
 }
 
 void Lane::work() {
+  std::string said;  // the newest error of each_turn_
   for (;;) {
     std::optional<WebServer::Call> call;
     {
@@ -88,7 +90,12 @@ void Lane::work() {
       }
     }
     if (call) obey(*call);
-    if (each_turn_) each_turn_();
+    try {
+      if (each_turn_) each_turn_();
+    } catch (const std::exception& error) {
+      if (said != error.what()) std::fprintf(stderr, "dashboard: %s\n", error.what());
+      said = error.what();
+    }
   }
 }
 
