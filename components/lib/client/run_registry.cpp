@@ -49,7 +49,10 @@ PublishedNote::PublishedNote(const RunNote& note) : note_(note), file_(note_file
 void PublishedNote::set_seed(std::uint64_t seed) {
   if (seed == note_.seed) return;
   note_.seed = seed;
-  write();
+  try {
+    write();
+  } catch (const std::exception&) {  // the run goes on with the note as it was, or without one
+  }
 }
 
 void PublishedNote::write() const {
@@ -62,7 +65,8 @@ void PublishedNote::write() const {
     std::ofstream stream(unfinished);
     // Before the token is in it: only this user may read the note.
     fs::permissions(unfinished, fs::perms::owner_read | fs::perms::owner_write);
-    stream << json_text(json, 1) << "\n";
+    if (!(stream << json_text(json, 1) << "\n").flush())
+      throw std::runtime_error(fmt::format("{}: cannot be written: is the disk full?", unfinished.string()));
   }
   fs::rename(unfinished, file_);
 }

@@ -18,11 +18,25 @@ class StopOrders {
   struct Arrived {
     std::uint64_t count = 0;
     std::string source;  ///< of the newest order
+    template <class Archive>
+    void serialize(Archive& archive) {
+      archive(count, source);
+    }
   };
   void add(const std::string& source) {
     const std::lock_guard lock(mutex_);
     ++arrived_.count;
     arrived_.source = source;
+  }
+  /// The orders that the plant has not taken. A successor of its process must know them: their senders have been told
+  /// that the plant has received them.
+  [[nodiscard]] Arrived waiting() const {
+    const std::lock_guard lock(mutex_);
+    return arrived_;
+  }
+  void restore(Arrived waiting) {
+    const std::lock_guard lock(mutex_);
+    arrived_ = std::move(waiting);
   }
   [[nodiscard]] Arrived take() {
     const std::lock_guard lock(mutex_);
@@ -30,7 +44,7 @@ class StopOrders {
   }
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   Arrived arrived_;
 };
 

@@ -55,7 +55,7 @@ bool is_slip_of(std::string_view found, std::string_view meant) {
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
   const std::string closest = closest_name(name, candidates);
-  return closest.empty() ? "" : ", did you mean '" + closest + "'?";
+  return closest.empty() || closest == name ? "" : ", did you mean '" + closest + "'?";
 }
 
 }  // namespace constrictor

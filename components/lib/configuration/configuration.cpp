@@ -1,5 +1,7 @@
 #include "configuration/configuration.hpp"
 
+#include "configuration/yaml_document.hpp"
+
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
@@ -108,7 +110,7 @@ void set_flow_style(YAML::Node& node) {
 
 YAML::Node parse_root(const std::string& text, const std::string& name) {
   try {
-    return YAML::Load(text);
+    return parse_yaml(text);
   } catch (const YAML::Exception& error) {
     throw located(name, std::max(error.mark.line, 0) + 1, "(syntax)", error.msg, "valid YAML (is a comma missing?)");
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <filesystem>
@@ -17,7 +18,11 @@ namespace constrictor {
 /// stays what it is, and nothing is left of one that is given up.
 class NewFile {
  public:
-  explicit NewFile(std::filesystem::path file) : file_(std::move(file)), part_(file_.string() + ".part") {}
+  explicit NewFile(std::filesystem::path file) : NewFile(std::move(file), ".part") {}
+  /// The same with a part() that no other process writes: whichever completes the file last determines its content.
+  static NewFile of_this_process(std::filesystem::path file) {
+    return {std::move(file), fmt::format(".{}.part", ::getpid())};
+  }
   ~NewFile() {
     std::error_code ignored;
     std::filesystem::remove(part_, ignored);
@@ -29,6 +34,8 @@ class NewFile {
   void complete() { std::filesystem::rename(part_, file_); }
 
  private:
+  NewFile(std::filesystem::path file, const std::string& ending)
+      : file_(std::move(file)), part_(file_.string() + ending) {}
   std::filesystem::path file_, part_;
 };
 

@@ -8,12 +8,14 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 namespace constrictor {
 
@@ -25,11 +27,12 @@ std::filesystem::path lock_file(std::uint32_t domain) {
 
 /// Takes the domain's file lock. Returns the descriptor, or a negative number if another process holds the lock.
 /// Children do not inherit it, because a child must not keep the claim of a launcher that died. The file is never
-/// removed, because two processes could then lock two different files of the same name.
-int try_lock(std::uint32_t domain) {
+/// removed, because two processes could then lock two different files of the same name. `operation`: LOCK_EX for a
+/// claim, LOCK_SH to see whether there is one.
+int try_lock(std::uint32_t domain, int operation) {
   const auto file = lock_file(domain);
   const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
-  if (lock < 0 || ::flock(lock, LOCK_EX | LOCK_NB) == 0) return lock;
+  if (lock < 0 || ::flock(lock, operation | LOCK_NB) == 0) return lock;
   ::close(lock);
   return -1;
 }
@@ -79,6 +82,25 @@ std::filesystem::path configuration_file(std::uint32_t domain) {
   return run_directory() / ("domain-" + std::to_string(domain) + ".dds");
 }
 
+/// Removes what a killed owner of the domain has left: its note and token would be taken for those of the new owner.
+void remove_left_files(std::uint32_t domain) {
+  const std::string number = std::to_string(domain);
+  for (const std::string& name : {"run-" + number + ".json", "run-" + number + ".token", "run-" + number + ".security",
+                                  "replay-" + number + ".sock", "domain-" + number + ".dds"}) {
+    std::error_code ignored;
+    std::filesystem::remove(run_directory() / name, ignored);
+  }
+}
+
+/// Takes the lock for a claim. Another process may hold it for a moment, to see whether there is a claim.
+int claim_lock(std::uint32_t domain) {
+  constexpr int kTries = 25;
+  int lock = -1;
+  for (int i = 0; i < kTries && (lock = try_lock(domain, LOCK_EX)) < 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  return lock;
+}
+
 constexpr std::uint32_t kFirst = 1, kLast = 100;  // domains among which a free one is chosen
 
 }  // namespace
@@ -95,7 +117,7 @@ std::filesystem::path run_directory() {
 
 bool domain_claimed(std::uint32_t domain) {
   if (!std::filesystem::exists(lock_file(domain))) return false;
-  const int lock = try_lock(domain);
+  const int lock = try_lock(domain, LOCK_SH);
   if (lock >= 0) ::close(lock);
   return lock < 0;
 }
@@ -131,11 +153,10 @@ DomainClaim::DomainClaim(std::optional<std::uint32_t> wanted, const std::set<std
   for (std::uint32_t domain = wanted.value_or(kFirst); domain <= wanted.value_or(kLast); ++domain) {
     if (!wanted && (avoid.contains(domain) || domain_in_use(domain))) continue;
     name_ = try_name(domain);
-    lock_ = name_ < 0 ? -1 : try_lock(domain);
+    lock_ = name_ < 0 ? -1 : claim_lock(domain);
     domain_ = domain;
     if (lock_ >= 0) {
-      std::error_code ignored;  // a killed owner may have left its file
-      std::filesystem::remove(configuration_file(domain), ignored);
+      remove_left_files(domain);
       return;
     }
     if (name_ >= 0) ::close(name_);

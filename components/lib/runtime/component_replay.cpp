@@ -170,7 +170,7 @@ std::vector<ReplayResult> replay_components(const fs::path& recording, const std
 }
 
 std::vector<ReplayResult> restore_images(const fs::path& recording, const fs::path& restored, const FindFactory& find) {
-  NewFile file(restored);
+  NewFile file = NewFile::of_this_process(restored);
   auto results = ComponentReplay(recording, {}, find, {}).restore(recording, file.part());
   file.complete();
   return results;

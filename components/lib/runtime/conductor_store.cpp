@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "component/plant_stop.hpp"
 #include "configuration/configuration.hpp"
 #include "constrictor/archive.hpp"
 #include "runtime/conductor_side.hpp"
@@ -41,7 +42,8 @@ void ConductorSide::save() {
     control_answers_bytes_ = std::make_shared<const std::string>(save_bytes(control_answers_));
   Checkpoint checkpoint = conductor_->save();
   const RecordingPosition recording = recorder_ ? recorder_->position() : RecordingPosition{};
-  checkpoint.head = save_bytes(checkpoint.head, hash_log_ ? hash_log_->length() : 0, recording, pacer_, ended_);
+  const StopOrders::Arrived stops = plant_.stop_orders() ? plant_.stop_orders()->waiting() : StopOrders::Arrived{};
+  checkpoint.head = save_bytes(checkpoint.head, hash_log_ ? hash_log_->length() : 0, recording, pacer_, ended_, stops);
   checkpoint.blobs.push_back(control_answers_bytes_);
   store_->write(checkpoint);
 }
@@ -50,15 +52,17 @@ void ConductorSide::make_successor(ConductorOptions options, const Checkpoint& f
   Checkpoint of_conductor = found;
   std::uint64_t log_length = 0;
   RecordingPosition recording;
+  StopOrders::Arrived stops;
   options.run_id = context_.options.run_id;  // 0: that of the checkpoint
   try {
-    load_bytes(found.head, of_conductor.head, log_length, recording, pacer_, ended_);
+    load_bytes(found.head, of_conductor.head, log_length, recording, pacer_, ended_, stops);
     if (found.blobs.empty()) throw std::runtime_error("the checkpoint is incomplete");
     load_bytes(*found.blobs.back(), control_answers_);
   } catch (const cereal::Exception& error) {
     throw std::runtime_error(fmt::format("the checkpoint is of another release: {}", error.what()));
   }
   of_conductor.blobs.pop_back();
+  if (plant_.stop_orders()) plant_.stop_orders()->restore(std::move(stops));
   conductor_ = std::make_unique<Conductor>(std::move(options), static_cast<ConductorSink&>(*this), of_conductor);
   if (log_length > 0) hash_log_ = std::make_unique<HashLog>(context_.options.setup.output_dir, log_length);
   if (recording.recording) open_recording(recording);

@@ -17,6 +17,8 @@ void ConductorSide::take_stop(const msg::EmergencyStop& stop) {
   // A stop is obeyed whatever its other fields contain. The plant latches it at its next tick.
   if (stop.robot_id != context_.options.setup.robot_id || !plant_.stop_orders()) return;
   plant_.stop_orders()->add(text_of(stop.source));
+  // The sender is told that the plant has received it, so that a successor must obey it, too. For that, one is enough.
+  if (plant_.stop_orders()->waiting().count == 1) save();
 }
 
 void ConductorSide::refuse_stranger(const msg::RunControl& control, const std::string& reason) {

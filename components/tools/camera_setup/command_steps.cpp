@@ -43,7 +43,7 @@ std::optional<cv::Mat> next(FrameReader& reader) {
 
 void require_writable(const fs::path& file) {
   if (fs::is_directory(file)) throw Failed(fmt::format("--out: found the folder {}, accepted a file", file.string()));
-  const NewFile probe(file);  // removes its part
+  const NewFile probe = NewFile::of_this_process(file);  // removes its part
   errno = 0;
   if (!std::ofstream(probe.part()))
     throw Failed(fmt::format("--out: cannot write {}: {}; does its folder exist, and may you write there?",

@@ -68,6 +68,7 @@ pid_t fork_bound_to_caller() {
   if (pid != 0) return pid;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != launcher) ::_exit(exit_status::kSoftware);  // the launcher died before prctl
+  ::signal(SIGPIPE, SIG_DFL);                                    // the launcher ignores it
   ::setpgid(0, 0);  // Ctrl-C must reach only the launcher, which ends its processes in order
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   return 0;

@@ -13,6 +13,8 @@ void catch_interrupts(std::initializer_list<int> signals) {
   for (const int number : signals) ::sigaction(number, &action, nullptr);
 }
 
+void survive_closed_pipes() { ::signal(SIGPIPE, SIG_IGN); }
+
 int interrupt_signal() { return static_cast<int>(g_signal); }
 
 }  // namespace constrictor::cli

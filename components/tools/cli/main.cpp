@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "cli/commands.hpp"
 #include "cli/standard_output.hpp"
@@ -31,6 +32,19 @@ int written(int status) {
   }
 }
 
+/// An empty argument is nearly always a variable of the shell that is not set: `--secure "$KEYS"` must not start a run
+/// without security.
+void refuse_empty_arguments(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    const bool no_value = argument.starts_with("--") && argument.find('=') == argument.size() - 1;
+    if (!argument.empty() && !no_value) continue;
+    const std::string_view named = argument.empty() ? argv[i - 1] : argument.substr(0, argument.size() - 1);
+    throw cli::UsageError(
+        fmt::format("{}: found nothing, accepted a value (is a variable of the shell not set?)", named));
+  }
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App app{"Constrictor: a distributed component system for modular snake robots."};
   app.set_version_flag(
@@ -50,6 +64,7 @@ int dispatch(int argc, char** argv) {
     }
     throw cli::UsageError(explain_parse_error(app, error));
   }
+  refuse_empty_arguments(argc, argv);
   return action();
 }
 

@@ -11,6 +11,7 @@
 #include "component/data_path.hpp"
 #include "component/parameters.hpp"
 #include "configuration/configuration.hpp"
+#include "configuration/yaml_document.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -98,7 +99,7 @@ std::vector<ParameterValue> read_parameter_file(const std::string& text, const s
                                                 const std::function<bool(const std::string&)>& is_fixed) {
   YAML::Node root;
   try {
-    root = YAML::Load(text);
+    root = parse_yaml(text);
   } catch (const YAML::ParserException& error) {
     throw ConfigurationError(fmt::format("{}:{}: {}", file, error.mark.line + 1, error.msg));
   }

@@ -58,6 +58,13 @@ std::string pace_text(const msg::RunState& state) {
   return text;
 }
 
+/// What a command does with a run that has not begun.
+std::string what_then(std::uint8_t command, const std::string& pace) {
+  if (command == msg::kRunPause) return "and will begin with a pause";
+  if (command == msg::kRunPace) return fmt::format("and will go on at the pace {}", pace);
+  return "and will begin without a pause";
+}
+
 /// Says which members a run that has not begun waits for, whenever that changes.
 class BeginWatch {
  public:
@@ -96,7 +103,8 @@ int control(const RunControlOptions& options, std::uint8_t command) {
                                 : command == msg::kRunPace  ? client.set_pace(pace)
                                 : command == msg::kRunPause ? client.pause()
                                                             : client.resume();
-    if (command == msg::kRunReset)
+    if (state.run_id == 0) fmt::print("run {}: has not begun, {}\n", run.domain, what_then(command, options.pace));
+    else if (command == msg::kRunReset)
       fmt::print("run {}: reset to seed {}, epoch {}\n", run.domain, state.seed, state.epoch);
     else if (state.paused) fmt::print("run {}: paused, next tick {}\n", run.domain, state.tick);
     else fmt::print("run {}: running, {}\n", run.domain, pace_text(state));

@@ -7,9 +7,12 @@
 #include <cerrno>
 #include <system_error>
 
+#include "cli/interrupt.hpp"
+
 namespace constrictor::cli {
 
 SignalQueue::SignalQueue() {
+  survive_closed_pipes();  // what a command does with its signals must not depend on who reads its output
   ::sigemptyset(&set_);
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) ::sigaddset(&set_, number);
   ::pthread_sigmask(SIG_BLOCK, &set_, &before_);

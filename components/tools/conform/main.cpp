@@ -90,14 +90,17 @@ void add_part(CLI::App& app, Options& options, const PartKind& kind) {
                         kind.name));
   domain->check(kDomains)->excludes(manifest);
   sub->add_option("--robot", options.robot, "robot: a file, or a name as in `constrictor run`; with --domain")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(domain);
   if (!kind.observable) {
     sub->add_option("--patience", options.patience_s, "[s] time in which the part must join; with --domain")
         ->capture_default_str()
+        ->needs(domain)
         ->check(number(1.0, 3600.0, "s"));
     sub->add_option("--scenario", options.scenario,
                     "scenario: a file, or a name as in `constrictor run`; with --domain")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->needs(domain);
   }
   add_options(*sub, options);
   sub->footer(

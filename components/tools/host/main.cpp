@@ -1,5 +1,6 @@
 // constrictor_host NAME[,NAME...] [OPTION...]: hosts several components in one process.
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cstdio>
 #include <sstream>
@@ -70,6 +71,11 @@ int main(int argc, char** argv) {
       return exit_status::kUsage;
     }
     factories.push_back(known->second());
+    const std::string& added = factories.back().name;
+    if (std::count_if(factories.begin(), factories.end(), [&](const auto& one) { return one.name == added; }) > 1) {
+      fmt::print(stderr, "constrictor_host: found component '{}' twice, accepted each once\n", added);
+      return exit_status::kUsage;
+    }
   }
   return host_main(argc - 1, argv + 1, std::move(factories));
 }

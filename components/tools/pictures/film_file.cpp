@@ -1,6 +1,7 @@
 #include "pictures/film_file.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
@@ -23,7 +24,7 @@ FilmFile::FilmFile(const fs::path& file, double rate_hz, int width, int height)
       width_(width),
       height_(height),
       rows_(cv::Mat::zeros(height + kBeyond, width + kBeyond, CV_8UC3)) {
-  part_.replace_extension(".part" + file.extension().string());
+  part_.replace_extension(fmt::format(".{}.part{}", ::getpid(), file.extension().string()));
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "8", 0);  // only what is fatal: FFmpeg's notes are not for users
   ::setenv("OPENCV_FFMPEG_WRITER_LOGLEVEL", "8", 0);
   for (const auto& [fourcc, name] : {std::pair{cv::VideoWriter::fourcc('a', 'v', 'c', '1'), "H.264"},

@@ -5,8 +5,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <fstream>
 #include <optional>
 #include <set>
+#include <string>
+#include <thread>
 
 #include "support/temporary_folder.hpp"
 namespace constrictor {
@@ -50,6 +54,35 @@ TEST_F(DomainClaims, EndWithTheirHolder) {
   claim.reset();
   EXPECT_FALSE(domain_claimed(domain));
   EXPECT_NO_THROW(claim.emplace(domain));
+}
+
+TEST_F(DomainClaims, RemoveWhatAKilledOwnerHasLeft) {
+  const std::uint32_t domain = 101 + static_cast<std::uint32_t>(::getpid()) % 129;
+  const std::string number = std::to_string(domain);
+  const auto files = {"run-" + number + ".json", "run-" + number + ".token", "replay-" + number + ".sock"};
+  for (const auto& file : files) std::ofstream(run_directory() / file) << "left";
+  std::ofstream(run_directory() / "run-1000.json") << "of another domain";
+  const DomainClaim claim(domain);
+  for (const auto& file : files) EXPECT_FALSE(std::filesystem::exists(run_directory() / file)) << file;
+  EXPECT_TRUE(std::filesystem::exists(run_directory() / "run-1000.json"));
+}
+
+TEST_F(DomainClaims, AreNotSeenWhereOnlyObserversLook) {
+  const std::uint32_t domain = 101 + static_cast<std::uint32_t>(::getpid()) % 129;
+  { const DomainClaim claim(domain); }  // leaves the file of the lock
+  std::atomic<bool> stop{false};
+  std::atomic<int> seen{0}, looks{0};
+  const auto look = [&] {
+    for (; !stop; ++looks)
+      if (domain_claimed(domain)) ++seen;
+  };
+  std::thread one(look), other(look);
+  while (looks < 2000) std::this_thread::yield();
+  EXPECT_EQ(seen, 0) << "one observer took the other for a claim";
+  EXPECT_NO_THROW(DomainClaim{domain}) << "an observer that looks for a moment prevents no claim";
+  stop = true;
+  one.join();
+  other.join();
 }
 
 }  // namespace

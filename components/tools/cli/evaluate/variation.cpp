@@ -16,6 +16,7 @@
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"
 #include "configuration/whole_file.hpp"
+#include "configuration/yaml_document.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -88,6 +89,15 @@ std::string folder_name(std::string text) {
   return text.substr(0, 150);
 }
 
+YAML::Node value_of(const Setting& setting) {
+  try {
+    return parse_yaml(setting.value);
+  } catch (const YAML::Exception& error) {
+    throw ConfigurationError(
+        fmt::format("--vary {}: found '{}', accepted a value in YAML: {}", setting.key, setting.value, error.msg));
+  }
+}
+
 /// Sets the value below `node` with the key KEY.KEY..., creating maps that do not exist.
 void set(YAML::Node node, const std::vector<std::string>& path, const Setting& setting, const fs::path& file) {
   for (std::size_t i = 0; i < path.size(); ++i) {
@@ -100,10 +110,10 @@ void set(YAML::Node node, const std::vector<std::string>& path, const Setting& s
             fmt::format("--vary {}: {} has a list there; found '{}', accepted an index from 0 to {}", setting.key,
                         file.string(), path[i], node.size() - 1));
       }
-      if (last) node[index] = YAML::Load(setting.value);
+      if (last) node[index] = value_of(setting);
       else node.reset(node[index]);
     } else if (node.IsMap() || node.IsNull() || !node.IsDefined()) {
-      if (last) node[path[i]] = YAML::Load(setting.value);
+      if (last) node[path[i]] = value_of(setting);
       else node.reset(node[path[i]]);
     } else {
       throw ConfigurationError(

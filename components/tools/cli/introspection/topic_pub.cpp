@@ -19,6 +19,7 @@
 #include "client/source.hpp"
 #include "client/topic_publisher.hpp"
 #include "configuration/counted.hpp"
+#include "configuration/yaml_document.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/host.hpp"
 
@@ -40,7 +41,11 @@ Json json_of(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Map: {
       Json made = Json::object();
-      for (const auto& entry : node) made[entry.first.as<std::string>()] = json_of(entry.second);
+      for (const auto& entry : node) {
+        const auto key = entry.first.as<std::string>();
+        if (made.contains(key)) throw YAML::ParserException(entry.first.Mark(), fmt::format("{} a second time", key));
+        made[key] = json_of(entry.second);
+      }
       return made;
     }
     case YAML::NodeType::Sequence: {
@@ -131,7 +136,7 @@ Json parse_message(const std::string& text) {
   Json json = Json::parse(text, nullptr, false);
   if (!json.is_discarded()) return json;
   try {
-    json = json_of(YAML::Load(text));
+    json = json_of(parse_yaml(text));
   } catch (const YAML::Exception& error) {
     throw UsageError(fmt::format("MESSAGE: neither JSON nor YAML: line {}, column {}: {}", error.mark.line + 1,
                                  error.mark.column + 1, error.msg));

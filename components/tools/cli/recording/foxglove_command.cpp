@@ -97,7 +97,7 @@ int foxglove(const FoxgloveOptions& options) {
   if (!options.force && fs::exists(options.output))
     throw UsageError(fmt::format("--output: found {}, which exists, accepted a new file (or --force)", options.output));
   catch_interrupts();
-  NewFile file(options.output);
+  NewFile file = NewFile::of_this_process(options.output);
   try {
     CopyForViewers copy(recording, file.part());
     copy.make();

@@ -118,7 +118,7 @@ int show_info(const InfoOptions& options) {
 int recover_damaged(const fs::path& file) {
   fs::path kept = file.string() + ".damaged";
   for (int number = 2; fs::exists(kept); ++number) kept = fmt::format("{}.damaged-{}", file.string(), number);
-  NewFile copy(file);
+  NewFile copy = NewFile::of_this_process(file);
   const mcap::Recovered recovered = mcap::copy_undamaged(file, copy.part());
   fs::rename(file, kept);
   copy.complete();

@@ -7,6 +7,7 @@
 #include <deque>
 #include <optional>
 
+#include "cli/interrupt.hpp"
 #include "cli/introspection/domain_view.hpp"
 #include "cli/recording/recording_text.hpp"
 #include "cli/recording/run_files.hpp"
@@ -132,6 +133,7 @@ class DomainRecorder {
 };
 
 int record(const RecordOptions& options) {
+  survive_closed_pipes();
   interrupted();  // from now on, Ctrl-C ends the recording in order
   if (!options.force && std::filesystem::exists(options.file))
     throw UsageError(fmt::format("FILE: found {}, which exists, accepted a new file (or --force)", options.file));
