@@ -38,6 +38,8 @@ void add(std::map<std::uint16_t, T>& known, T value, const char* what) {
     throw Error(fmt::format("{} record: found a second definition of id {}, accepted the same one", what, value.id));
 }
 
+constexpr std::size_t kCheckedOfFooter = kRecordHeader + 16;  // [byte] that the checksum of the summary covers
+
 }  // namespace
 
 Bytes uncompress_chunk(Bytes content, std::string& buffer) {
@@ -113,9 +115,14 @@ void Reader::learn_definitions() {
   const std::string tail = file_.read(size - end, end);
   if (!std::string_view(tail).ends_with(kMagic)) return;
   try {
-    const auto start = Decoder(bytes_of(tail).subspan(kRecordHeader), "Footer record").number<std::uint64_t>();
+    Decoder footer(bytes_of(tail).subspan(kRecordHeader), "Footer record");
+    const auto start = footer.number<std::uint64_t>();
     if (start < first_record_ || start > size - end) return;
+    footer.number<std::uint64_t>();
+    const auto crc = footer.number<std::uint32_t>();
     const std::string summary = file_.read(start, size - end - start);
+    // A wrong definition here would make the right one in the data section look wrong.
+    if (crc != 0 && crc != crc32(bytes_of(tail).first(kCheckedOfFooter), crc32(bytes_of(summary)))) return;
     for_each_record(bytes_of(summary), [this](Op op, Bytes content, std::uint64_t) {
       if (op == Op::kSchema) add_schema(content);
       else if (op == Op::kChannel) add_channel(content);
@@ -279,8 +286,7 @@ void Reader::read_summary(std::uint64_t start) {
   footer.number<std::uint64_t>();
   const auto crc = footer.number<std::uint32_t>();
   if (summary_start != 0 && summary_start != start) footer.damaged("does not say where the summary is");
-  constexpr std::uint64_t kChecked = kRecordHeader + 16;  // of the footer
-  if (crc != 0 && crc != crc32(bytes_of(bytes).first(footer_at - start + kChecked)))
+  if (crc != 0 && crc != crc32(bytes_of(bytes).first(footer_at - start + kCheckedOfFooter)))
     footer.damaged("the summary does not have the content that its checksum states");
   for_each_record(bytes_of(bytes).first(footer_at - start), [&](Op op, Bytes content, std::uint64_t) {
     if (op == Op::kSchema) add_schema(content);

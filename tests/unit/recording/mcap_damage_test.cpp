@@ -1,5 +1,8 @@
 // Files that are cut, changed or of another kind: the reader refuses them with a reason, or returns a beginning of what
 // was written; it never crashes and never invents a message.
+#include <set>
+#include <string>
+
 #include "mcap_fixture.hpp"
 #include "recording/recovery.hpp"
 
@@ -85,6 +88,27 @@ TEST_F(McapFile, ADamagedChunkCostsItsOwnMessagesOnly) {
     EXPECT_NE(recovered.why.find("damaged at byte " + std::to_string(chunks[n].offset)), std::string::npos)
         << recovered.why;
     EXPECT_EQ(content_of(file("changed")), changed) << "the damaged file must not be touched";
+  }
+}
+
+TEST_F(McapFile, ADamagedSummaryCostsNoMessage) {
+  const auto written = write(file(), 40);
+  const std::string content = content_of(file());
+  Reader whole(file());
+  whole.read();
+  // Every definition stands in the data section, too. The last of each topic's names is that of the summary.
+  std::set<std::string> topics;
+  for (const Line& line : written) topics.insert(line.topic);
+  for (const std::string& topic : topics) {
+    std::string damaged = content;
+    const std::size_t at = damaged.rfind(topic);
+    ASSERT_GT(at, whole.contents().chunks.back().offset) << topic;
+    damaged[at] ^= 1;
+    store(file("damaged"), damaged);
+    const Recovered recovered = copy_undamaged(file("damaged"), file("copy"));
+    EXPECT_EQ(recovered.messages, written.size()) << topic;
+    Reader copy(file("copy"));
+    EXPECT_EQ(lines_of(copy), written) << topic;
   }
 }
 
