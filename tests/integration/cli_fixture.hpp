@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "integration/case_study_manifest.hpp"
@@ -42,6 +43,17 @@ class CliFixture : public ::testing::Test {
   }
   [[nodiscard]] nlohmann::json report(const std::string& name) const {
     return nlohmann::json::parse(std::ifstream(dir_ / name / "report.json"), nullptr, false);
+  }
+
+  /// Files of the test's folder that a command has begun to write, as `NAME.PID.part`, with their sizes.
+  [[nodiscard]] std::map<std::string, std::uintmax_t> unfinished() const {
+    std::map<std::string, std::uintmax_t> files;
+    for (const auto& entry : std::filesystem::directory_iterator(dir_)) {
+      std::error_code gone;
+      const std::string name = entry.path().filename();
+      if (name.find(".part") != std::string::npos) files[name] = entry.file_size(gone);
+    }
+    return files;
   }
 
   const TemporaryFolder folder_;

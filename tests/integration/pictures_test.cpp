@@ -80,7 +80,7 @@ TEST_F(Pictures, AFilmHasItsFramesInMotion) {
   cv::meanStdDev(frames[3](cv::Rect(10, 60, 400, 150)), mean, deviation);
   EXPECT_GT(deviation[0], 5.0) << "the scene is empty";
   EXPECT_EQ(cv::VideoCapture(out("film.mp4"), cv::CAP_FFMPEG).get(cv::CAP_PROP_FPS), 10.0);
-  EXPECT_FALSE(fs::exists(dir_ / "film.part.mp4"));
+  EXPECT_EQ(unfinished().size(), 0u);
   ASSERT_EQ(film({"--fps", "10", "--speed", "4", "--size", "320x180"}), exit_status::kOk) << output_;
   EXPECT_EQ(frames_of("film.mp4").size(), 3U) << "0, 0.4 and 0.8 s";
 }
@@ -113,8 +113,7 @@ TEST_F(Pictures, AnInterruptedFilmHasWhatWasDone) {
   Process process({program("constrictor"), "film", run("on").string(), "-o", out("cut.mp4"), "--fps", "120", "--speed",
                    "0.02", "--size", "320x180"},
                   environment_);
-  EXPECT_TRUE(
-      eventually([&] { return fs::exists(dir_ / "cut.part.mp4") && fs::file_size(dir_ / "cut.part.mp4") > 0; }));
+  EXPECT_TRUE(eventually([&] { return unfinished().size() == 1 && unfinished().begin()->second > 0; }));
   process.signal(SIGINT);
   EXPECT_EQ(process.wait(20s), 128 + SIGINT) << process.errors();
   const std::string said = process.output() + process.errors();
@@ -146,8 +145,8 @@ TEST_F(Pictures, WhatCannotBeDrawnIsRefusedWithAReason) {
   refused({"film", dir_.string(), "-o", out("film.mp4")}, 64, "which has no run.mcap");
   std::ofstream(dir_ / "text.mcap") << "this is no recording";
   refused({"film", out("text.mcap"), "-o", out("film.mp4")}, 70, "text.mcap");
-  for (const char* name : {"f.png", "film.mp4", "f.png.part", "film.mp4.part", "film.part.mp4"})
-    EXPECT_FALSE(fs::exists(dir_ / name)) << name;
+  for (const char* name : {"f.png", "film.mp4"}) EXPECT_FALSE(fs::exists(dir_ / name)) << name;
+  EXPECT_EQ(unfinished().size(), 0u);
 }
 
 }  // namespace

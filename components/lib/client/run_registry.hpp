@@ -45,6 +45,8 @@ class PublishedNote {
   PublishedNote(const PublishedNote&) = delete;
   PublishedNote& operator=(const PublishedNote&) = delete;
   [[nodiscard]] const std::string& token() const { return note_.token; }
+  /// For commands to the run, also when the files are gone, as those below /run/user are after a logout.
+  [[nodiscard]] RunKey key() const { return {note_.run_id, note_.token}; }
   /// The file with the run's token; empty if the run has none.
   [[nodiscard]] const std::filesystem::path& token_file() const { return token_file_; }
   /// Rewrites the note after a reset, which changes the seed.

@@ -1,9 +1,6 @@
 #include "configuration/configuration.hpp"
 
-#include "configuration/yaml_document.hpp"
-
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <charconv>
@@ -13,6 +10,7 @@
 #include <utility>
 
 #include "configuration/closest_name.hpp"
+#include "configuration/yaml_document.hpp"
 
 namespace constrictor {
 namespace {

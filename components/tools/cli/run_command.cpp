@@ -193,10 +193,7 @@ class Launcher {
       return ending_.at_once();
     };
     try {
-      // With the key itself: the file that has it may be gone, as /run/user is after a logout.
-      RunControlClient(observer_.participant(), claim_.domain(), kAnswerBound, meanwhile,
-                       RunKey{run_id_, note_.token()})
-          .end();
+      RunControlClient(observer_.participant(), claim_.domain(), kAnswerBound, meanwhile, note_.key()).end();
       ending_.accepted(Clock::now());
     } catch (const CommandError& error) {
       // The wait was interrupted because the run has ended or a second signal arrived.

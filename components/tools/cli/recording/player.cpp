@@ -293,7 +293,6 @@ class Player {
 }  // namespace
 
 int play_recording(const PlayOptions& options) {
-  survive_closed_pipes();
   catch_interrupts({SIGINT, SIGTERM});
   return Player(options).play();
 }

@@ -56,6 +56,7 @@ int replay_components(const ReplayOptions& options) {
 }
 
 int replay(ReplayOptions options) {
+  survive_closed_pipes();
   options.file = recording_or_throw(options.file).string();
   if (!options.restored.empty() && std::filesystem::exists(options.restored))
     throw UsageError(
