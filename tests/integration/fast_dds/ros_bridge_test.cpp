@@ -28,13 +28,13 @@ namespace {
 using namespace std::chrono_literals;
 
 TEST_F(RosBridge, RosReceivesTheRobotsTopicsAndTheRunIsTheSameWithoutTheBridge) {
-  Process launcher = run("bridged", "short", {"--max-sim-time", "8", "--pace", "1x"});
+  Process launcher = run("bridged", "short", {"--max-sim-time", "8", "--pace", "2x"});
   const unsigned domain = domain_of(launcher);
   ASSERT_GT(domain, 0u) << launcher.output();
   const std::string ros_domain = std::to_string(100 + domain);  // runs take 1 to 100
   Process bridge({program("ros_bridge"), "--domain", std::to_string(domain), "--ros-domain", ros_domain},
                  {{"ROS_LOCALHOST_ONLY", "1"}});
-  Process probe({program("ros_probe"), "--domain", ros_domain, "--for", "12"});
+  Process probe({program("ros_probe"), "--domain", ros_domain, "--for", "8"});
 
   // The robot's own messages, for comparison.
   std::map<std::int64_t, std::vector<double>> said;
