@@ -11,6 +11,10 @@ using namespace std::chrono_literals;
 
 namespace {
 
+/// A reader with a receive buffer of the usual 208 KiB loses datagrams of an image while its computer is busy, and asks
+/// for them again. Until they have arrived, the writer must not replace the image by newer ones. ROS 2's own default.
+constexpr int kImageDepth = 10;
+
 RequestClientOptions client_options(const BridgeOptions& options) {
   RequestClientOptions client;
   client.source = unique_source("ros_bridge");
@@ -59,10 +63,10 @@ Bridge::Bridge(const BridgeOptions& options, RobotModel robot, constrictor::Log 
   odom_out_ = node_.writer<Odometry>("odom", 10);
   tf_out_ = node_.writer<TFMessage>("tf", 10);
   tf_static_out_ = node_.writer<TFMessage>("tf_static", 1);
-  image_out_ = node_.writer<Image>("camera/image_raw", 2);
+  image_out_ = node_.writer<Image>("camera/image_raw", kImageDepth);
   camera_info_out_ = node_.writer<CameraInfo>("camera/camera_info", 10);  // small, and an image is useless without it
-  percept_image_out_ = node_.writer<Image>("perception/image", 2);
-  overview_image_out_ = node_.writer<Image>("overview/image", 2);
+  percept_image_out_ = node_.writer<Image>("perception/image", kImageDepth);
+  overview_image_out_ = node_.writer<Image>("overview/image", kImageDepth);
   map_markers_out_ = node_.writer<MarkerArray>("markers/map", 1);
   line_markers_out_ = node_.writer<MarkerArray>("markers/line_in_view", 1);
   object_markers_out_ = node_.writer<MarkerArray>("markers/objects_in_view", 1);

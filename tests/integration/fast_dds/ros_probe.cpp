@@ -162,8 +162,10 @@ void read_robot(example::Participant& node) {
                   m.encoding().c_str(), m.data().size(), sum);
     };
   };
-  node.read<sensor::Image_PubSubType>("rt/camera/image_raw", true, 2, print_image("image"));
-  node.read<sensor::Image_PubSubType>("rt/perception/image", true, 2, print_image("percept_image"));
+  // ROS 2's default depth. With 2, an image of which datagrams are asked for again is pushed out by the next two
+  // images.
+  node.read<sensor::Image_PubSubType>("rt/camera/image_raw", true, 10, print_image("image"));
+  node.read<sensor::Image_PubSubType>("rt/perception/image", true, 10, print_image("percept_image"));
   node.read<sensor::CameraInfo_PubSubType>("rt/camera/camera_info", true, 10, [](const auto& m) {
     std::printf("camera_info %lld %ux%u %s fx=%.6f\n", ns(m.header().stamp()), m.width(), m.height(),
                 m.distortion_model().c_str(), m.k()[0]);
