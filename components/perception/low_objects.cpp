@@ -9,7 +9,7 @@
 namespace constrictor::perception {
 namespace {
 
-constexpr double kLeastHeight_m = 0.02;
+constexpr double kLeastObjectHeight_m = 0.02;
 constexpr double kRisePixels = 2.0;  // the least height is also this many pixels
 constexpr double kHorizonPixels = 3.0;
 
@@ -48,7 +48,7 @@ Rise rise_of_whole(const std::vector<Path>& paths, const GroundCamera& camera, c
   std::vector<double> heights;
   for (const Path& path : paths)
     heights.push_back(camera.height_m() - disc.far_m(path.aside_rad) * std::max(path.slope, 0.0));
-  const double least_m = std::max(kLeastHeight_m, kRisePixels * disc.centre_m / camera.focal_pixels());
+  const double least_m = std::max(kLeastObjectHeight_m, kRisePixels * disc.centre_m / camera.focal_pixels());
   const double lowest_m = *std::min_element(heights.begin(), heights.end());
   height.m = median(heights);
   height.sd = std::min(height.m - least_m, 2.0 * lowest_m - least_m) / (least_m / kRisePixels);

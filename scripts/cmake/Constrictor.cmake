@@ -58,10 +58,11 @@ function(constrictor_position_independent target)
   endif()
 endfunction()
 
-# constrictor_compile_together(TARGET): up to eight files of the target are compiled as one, because most of the time
-# goes into the headers that all of them include. Names in the anonymous namespaces of such a target must differ.
+# constrictor_compile_together(TARGET): up to 16 files of the target are compiled as one, because most of the time goes
+# into the headers that all of them include, and into the functions of these headers. Names in the anonymous namespaces
+# of such a target must differ.
 function(constrictor_compile_together target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CONSTRICTOR_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${CONSTRICTOR_UNITY} UNITY_BUILD_BATCH_SIZE 16)
 endfunction()
 
 # constrictor_compile_quickly(TARGET...): for programs that wait for people or messages, and for tests. CLI11, JSON and
@@ -261,6 +262,7 @@ function(constrictor_test name)
                         GTest::gtest GTest::gtest_main)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   constrictor_compile_quickly(${name})
+  set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)  # a changed test should be built soon
   if(CONSTRICTOR_PCH)
     target_precompile_headers(${name} REUSE_FROM constrictor_test_precompiled)
   endif()

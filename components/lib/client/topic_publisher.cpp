@@ -21,8 +21,8 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 constexpr std::string_view kModule = "constrictor::msg::";
-constexpr int kDepth = 64;
-constexpr auto kDiscovery = 1500ms;
+constexpr int kSamplesKept = 64;
+constexpr auto kReaderDiscovery = 1500ms;
 constexpr auto kSettled = 250ms;  // without a new endpoint
 
 /// The row of a topic in the table of topics.
@@ -55,7 +55,7 @@ std::vector<dds::Endpoint> settled_endpoints(const dds::Discovery& discovery) {
     endpoints = discovery.endpoints();
     return endpoints.size() != before;
   };
-  wait_until_quiet(kSettled, kDiscovery, poll, [&] { return !endpoints.empty(); });
+  wait_until_quiet(kSettled, kReaderDiscovery, poll, [&] { return !endpoints.empty(); });
   return endpoints;
 }
 
@@ -160,7 +160,8 @@ Json TopicPublisher::decode(const std::vector<std::uint8_t>& bytes) const { retu
 
 int TopicPublisher::readers() {
   if (!parts_->writer)
-    parts_->writer.emplace(parts_->participant, topic_, dds::RawWriter::Type{type_, parts_->keyed, false}, kDepth);
+    parts_->writer.emplace(parts_->participant, topic_, dds::RawWriter::Type{type_, parts_->keyed, false},
+                           kSamplesKept);
   return parts_->writer->readers();
 }
 

@@ -24,8 +24,8 @@
 namespace constrictor::dds {
 namespace {
 
-constexpr std::size_t kLargest = 65536;  // [byte] of a datagram
-constexpr std::size_t kBatch = 12;       // datagrams; Linux keeps 11 in a socket by default
+constexpr std::size_t kLargestDatagram = 65536;  // [byte] of a datagram
+constexpr std::size_t kBatch = 12;               // datagrams; Linux keeps 11 in a socket by default
 constexpr auto kAskAgain = std::chrono::seconds(1);
 /// The name of Cyclone's thread that receives the messages of the topics, and nothing else.
 constexpr std::string_view kReceivingThread = "recvUC";
@@ -79,7 +79,7 @@ std::optional<sockaddr_in> own_address(int socket) {
 
 /// What a datagram consists of: its bytes, and the address of the sender.
 struct Mail {
-  std::unique_ptr<char[]> bytes = std::make_unique_for_overwrite<char[]>(kLargest);
+  std::unique_ptr<char[]> bytes = std::make_unique_for_overwrite<char[]>(kLargestDatagram);
   std::size_t size = 0;
   sockaddr_in from{};
 
@@ -108,7 +108,7 @@ class ReceivingMailbox {
       socket_ = -1;
     }
     for (std::size_t i = 0; i < kBatch; ++i) {
-      places_.at(i) = {mails_.at(i).bytes.get(), kLargest};
+      places_.at(i) = {mails_.at(i).bytes.get(), kLargestDatagram};
       mails_.at(i).from = address;
       headers_.at(i).msg_hdr.msg_iov = &places_.at(i);
       headers_.at(i).msg_hdr.msg_iovlen = 1;

@@ -20,7 +20,7 @@
 namespace constrictor {
 namespace {
 
-constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'C', 'K', 'P', '1'};
+constexpr char kCheckpointMagic[8] = {'C', 'N', 'S', 'T', 'C', 'K', 'P', '1'};
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kFirstPart = 3 * kPage;  // after the header and the two slots, each on a page of its own
 constexpr std::size_t kFirstSize = 256 * kPage;
@@ -38,8 +38,8 @@ std::string boot_id() {
   return id.substr(0, kLongestBoot);
 }
 
-struct Header {
-  char magic[sizeof kMagic];
+struct CheckpointHeader {
+  char magic[sizeof kCheckpointMagic];
   char boot[kLongestBoot + 1];  // the boot of the computer in which the file was made
 
   /// Bytes that are right already stay as they are: a process that is killed here leaves a file of this boot.
@@ -75,17 +75,17 @@ CheckpointFile::CheckpointFile(std::filesystem::path path) : path_(std::move(pat
     const off_t found = ::lseek(descriptor_, 0, SEEK_END);
     size_ = static_cast<std::size_t>(found);
     // A process that was killed while it made the file may have left it without content.
-    char magic[sizeof kMagic] = {};
+    char magic[sizeof kCheckpointMagic] = {};
     const bool fresh = ::pread(descriptor_, magic, sizeof magic, 0) < 0 ||
                        std::all_of(magic, std::end(magic), [](char c) { return c == 0; });
     if (!fresh && size_ < kFirstSize) throw failure(path_, "found a file that is too short for a checkpoint");
     grow(fresh ? kFirstSize : size_);
-    auto& header = *reinterpret_cast<Header*>(data_);
+    auto& header = *reinterpret_cast<CheckpointHeader*>(data_);
     if (fresh) {
       header.note_boot();
       std::atomic_signal_fence(std::memory_order_seq_cst);
-      std::memcpy(header.magic, kMagic, sizeof kMagic);
-    } else if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
+      std::memcpy(header.magic, kCheckpointMagic, sizeof kCheckpointMagic);
+    } else if (std::memcmp(header.magic, kCheckpointMagic, sizeof kCheckpointMagic) != 0) {
       throw failure(path_, "found a file that is no checkpoint of this release");
     }
   } catch (...) {
@@ -101,7 +101,7 @@ CheckpointFile::~CheckpointFile() {
 }
 
 bool CheckpointFile::of_this_boot() const {
-  const auto& header = *reinterpret_cast<const Header*>(data_);
+  const auto& header = *reinterpret_cast<const CheckpointHeader*>(data_);
   return std::string(header.boot, ::strnlen(header.boot, sizeof header.boot)) == boot_id();
 }
 
@@ -204,7 +204,7 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
 
 void CheckpointFile::clear() {
   std::memset(data_ + kPage, 0, 2 * kPage);
-  reinterpret_cast<Header*>(data_)->note_boot();
+  reinterpret_cast<CheckpointHeader*>(data_)->note_boot();
   number_ = 0;
   stored_.clear();
   table_of_last_ = table_of_last_but_one_ = {};

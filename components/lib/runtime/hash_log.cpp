@@ -22,10 +22,10 @@
 namespace constrictor {
 namespace {
 
-constexpr char kMagic[8] = {'C', 'N', 'S', 'T', 'H', 'L', 'G', '4'};
+constexpr char kHashLogMagic[8] = {'C', 'N', 'S', 'T', 'H', 'L', 'G', '4'};
 
-struct Header {
-  char magic[sizeof kMagic];
+struct HashLogHeader {
+  char magic[sizeof kHashLogMagic];
   std::int64_t incomplete_from;  // tick from which on entries are missing because the disk was full; -1: none
 };
 
@@ -36,10 +36,10 @@ struct Fixed {
   std::uint64_t topic;
 };
 
-Header read_header(std::ifstream& file, const std::filesystem::path& directory) {
-  Header header{};
+HashLogHeader read_header(std::ifstream& file, const std::filesystem::path& directory) {
+  HashLogHeader header{};
   if (!file.read(reinterpret_cast<char*>(&header), sizeof header) ||
-      std::memcmp(header.magic, kMagic, sizeof kMagic) != 0) {
+      std::memcmp(header.magic, kHashLogMagic, sizeof kHashLogMagic) != 0) {
     throw std::runtime_error((directory / "hashes.bin").string() + ": missing, or not a hash log of this release");
   }
   return header;
@@ -73,8 +73,8 @@ HashLog::~HashLog() {
 }
 
 void HashLog::write_header(std::int64_t incomplete_from) const {
-  Header header{{}, incomplete_from};
-  std::memcpy(header.magic, kMagic, sizeof kMagic);
+  HashLogHeader header{{}, incomplete_from};
+  std::memcpy(header.magic, kHashLogMagic, sizeof kHashLogMagic);
   if (::pwrite(descriptor_, &header, sizeof header, 0) != sizeof header)
     throw std::runtime_error(path_.string() + ": " + std::strerror(errno));
 }
@@ -84,7 +84,7 @@ void HashLog::restart() {
   full_ = false;
   if (::ftruncate(descriptor_, 0) != 0) throw std::runtime_error(path_.string() + ": " + std::strerror(errno));
   write_header(-1);
-  length_ = sizeof(Header);
+  length_ = sizeof(HashLogHeader);
 }
 
 std::string HashLog::flush() {
@@ -110,7 +110,7 @@ std::string HashLog::flush() {
 
 std::optional<std::int64_t> HashLog::full_disk_at(const std::filesystem::path& directory) {
   std::ifstream file(directory / "hashes.bin", std::ios::binary);
-  const Header header = read_header(file, directory);
+  const HashLogHeader header = read_header(file, directory);
   return header.incomplete_from < 0 ? std::nullopt : std::optional(header.incomplete_from);
 }
 

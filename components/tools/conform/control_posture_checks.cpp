@@ -9,12 +9,12 @@
 #include "configuration/counted.hpp"
 
 #include "conform/control_conformance.hpp"
+#include "conform/unit_factor.hpp"
 
 namespace constrictor::conform {
 namespace {
 
 constexpr double kBendRate_rad_s = 1.0;
-constexpr double kUnitFactor = 8.0;
 
 double rms(const std::vector<double>& values) {
   const double sum = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);

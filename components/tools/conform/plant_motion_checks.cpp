@@ -10,13 +10,13 @@
 #include "configuration/counted.hpp"
 #include "conform/median.hpp"
 #include "conform/plant_conformance.hpp"
+#include "conform/unit_factor.hpp"
 
 namespace constrictor::conform {
 namespace {
 
 constexpr double kMovedShare = 0.3;  // of the amplitude: less is not a motion
 constexpr double kWrongRate = 4.0;   // a rate that is larger by this factor has a wrong unit, even at one joint only
-constexpr double kUnitFactor = 8.0;  // a gain beyond this, or below its inverse, is a wrong unit
 
 /// Names up to eight joints: "joints 0, 3, 4".
 std::string names_of(const std::vector<std::size_t>& joints) {

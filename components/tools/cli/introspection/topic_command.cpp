@@ -32,18 +32,18 @@ struct TopicOptions {
 };
 
 /// The columns of the project's table of topics that are written for people.
-struct Description {
+struct TopicDescription {
   std::string_view doc;
   std::string_view rate;
 };
 
 /// Empty if the project does not define the topic.
-std::optional<Description> described(const std::string& topic) {
+std::optional<TopicDescription> described(const std::string& topic) {
   for (const auto& info : topics::kInfos) {
-    if (info.name == topic) return Description{info.doc, info.rate};
+    if (info.name == topic) return TopicDescription{info.doc, info.rate};
   }
   for (const auto& info : barrier_topics::kInfos) {
-    if (info.name == topic) return Description{info.doc, info.rate};
+    if (info.name == topic) return TopicDescription{info.doc, info.rate};
   }
   return std::nullopt;
 }
@@ -78,7 +78,7 @@ int list_topics(const TopicOptions& options) {
   fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", "topic", "type", "writers", "readers", "content");
   for (const auto& [name, row] : rows) {
     fmt::print("{:<28} {:<40} {:>7} {:>7}  {}\n", name, row.type, row.writers, row.readers,
-               described(name).value_or(Description{}).doc);
+               described(name).value_or(TopicDescription{}).doc);
   }
   return exit_status::kOk;
 }
