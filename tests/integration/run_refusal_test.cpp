@@ -44,6 +44,25 @@ TEST_F(RunCommand, RefusesWrongFilesAndArgumentsBeforeAnythingStarts) {
   }
 }
 
+// The value of a shell's variable that is not set.
+TEST_F(RunCommand, EveryCommandRefusesAnEmptyArgument) {
+  const std::vector<std::vector<std::string>> commands = {
+      {"run", "--secure", ""},    {"check", "--robot", ""},
+      {"host", "--robot", ""},    {"conform", "planner", "--robot", ""},
+      {"dashboard", "--run", ""}, {"camera", "show", "--source", ""}};
+  for (const auto& arguments : commands) {
+    Process refused = command(arguments);
+    EXPECT_EQ(refused.wait(30s), exit_status::kUsage) << arguments.front() << refused.output() << refused.errors();
+    EXPECT_NE(refused.errors().find("found nothing, accepted a value"), std::string::npos) << refused.errors();
+  }
+}
+
+TEST_F(RunCommand, SaysWithoutTheWordsOfALibraryThatAReportCannotBeWritten) {
+  Process refused = command({"run", "--report", "/dev/null"});
+  EXPECT_EQ(refused.wait(30s), exit_status::kSoftware) << refused.errors();
+  EXPECT_EQ(refused.errors(), "constrictor: /dev/null: Not a directory\n");
+}
+
 TEST_F(RunCommand, CheckReportsWhatRunWouldRefuseAndStartsNothing) {
   Process correct = command({"check", "line", "--robot", "serpens"});
   EXPECT_EQ(correct.wait(30s), exit_status::kOk) << correct.errors();

@@ -46,12 +46,13 @@ PublishedNote::PublishedNote(const RunNote& note) : note_(note), file_(note_file
   write();
 }
 
-void PublishedNote::set_seed(std::uint64_t seed) {
+void PublishedNote::set_seed(std::uint64_t seed, const std::function<void(const std::string&)>& warn) {
   if (seed == note_.seed) return;
   note_.seed = seed;
   try {
     write();
-  } catch (const std::exception&) {  // the run goes on with the note as it was, or without one
+  } catch (const std::exception& error) {
+    warn(fmt::format("the note of this run still names the seed from before the reset: {}", error.what()));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,8 +50,9 @@ class PublishedNote {
   [[nodiscard]] RunKey key() const { return {note_.run_id, note_.token}; }
   /// The file with the run's token; empty if the run has none.
   [[nodiscard]] const std::filesystem::path& token_file() const { return token_file_; }
-  /// Rewrites the note after a reset, which changes the seed.
-  void set_seed(std::uint64_t seed);
+  /// Rewrites the note after a reset, which changes the seed. If it cannot be written, it stays as it was, which `warn`
+  /// is told: the run goes on.
+  void set_seed(std::uint64_t seed, const std::function<void(const std::string&)>& warn);
 
  private:
   void write() const;

@@ -110,7 +110,7 @@ YAML::Node parse_root(const std::string& text, const std::string& name) {
   try {
     return parse_yaml(text);
   } catch (const YAML::Exception& error) {
-    throw located(name, std::max(error.mark.line, 0) + 1, "(syntax)", error.msg, "valid YAML (is a comma missing?)");
+    throw located(name, std::max(error.mark.line, 0) + 1, "(syntax)", error.msg, accepted_yaml(error));
   }
 }
 

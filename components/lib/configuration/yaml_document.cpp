@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <vector>
 
 namespace constrictor {
 namespace {
@@ -40,6 +39,10 @@ YAML::Node parse_yaml(const std::string& text) {
   std::size_t values = 0;
   visit(found, 0, values);
   return found;
+}
+
+std::string accepted_yaml(const YAML::Exception& error) {
+  return error.msg.find("flow") == std::string::npos ? "valid YAML" : "valid YAML (is a comma missing?)";
 }
 
 }  // namespace constrictor

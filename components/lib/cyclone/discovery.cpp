@@ -74,14 +74,7 @@ void read_alive(dds_entity_t reader, Use&& use) {
   const int count = check(dds_read_mask(reader, samples.data(), infos.data(), kMost, kMost,
                                         DDS_ALIVE_INSTANCE_STATE | DDS_ANY_SAMPLE_STATE | DDS_ANY_VIEW_STATE),
                           "dds_read");
-  struct Loan {
-    dds_entity_t reader;
-    void** samples;
-    int count;
-    ~Loan() {
-      if (count > 0) dds_return_loan(reader, samples, count);
-    }
-  } const loan{reader, samples.data(), count};
+  const Loan loan(reader, samples.data(), count);
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     if (infos[i].valid_data) use(*static_cast<const T*>(samples[i]));
   }

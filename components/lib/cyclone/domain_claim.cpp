@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace constrictor {
 
@@ -82,14 +83,16 @@ std::filesystem::path configuration_file(std::uint32_t domain) {
   return run_directory() / ("domain-" + std::to_string(domain) + ".dds");
 }
 
-/// Removes what a killed owner of the domain has left: its note and token would be taken for those of the new owner.
+/// Removes what a killed owner of the domain has left: every file KIND-DOMAIN.ENDING but the lock. Its note and token
+/// would be taken for those of the new owner.
 void remove_left_files(std::uint32_t domain) {
-  const std::string number = std::to_string(domain);
-  for (const std::string& name : {"run-" + number + ".json", "run-" + number + ".token", "run-" + number + ".security",
-                                  "replay-" + number + ".sock", "domain-" + number + ".dds"}) {
-    std::error_code ignored;
-    std::filesystem::remove(run_directory() / name, ignored);
+  std::vector<std::filesystem::path> left;
+  for (const auto& entry : std::filesystem::directory_iterator(run_directory())) {
+    const auto& file = entry.path();
+    if (file.stem().string().ends_with("-" + std::to_string(domain)) && file != lock_file(domain)) left.push_back(file);
   }
+  std::error_code ignored;
+  for (const auto& file : left) std::filesystem::remove(file, ignored);
 }
 
 /// Takes the lock for a claim. Another process may hold it for a moment, to see whether there is a claim.

@@ -53,12 +53,7 @@ void take_all_from(dds_entity_t reader, Use&& use) {
     std::array<dds_sample_info_t, kBatch> infos{};
     const int count = check(dds_take(reader, messages.data(), infos.data(), kBatch, kBatch), "dds_take");
     if (count == 0) return;
-    struct Loan {
-      dds_entity_t reader;
-      void** messages;
-      int count;
-      ~Loan() { dds_return_loan(reader, messages, count); }
-    } const loan{reader, messages.data(), count};
+    const Loan loan(reader, messages.data(), count);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       if (infos[i].valid_data) use(messages[i], infos[i].publication_handle);
     }

@@ -51,6 +51,19 @@ class Entity {
   dds_entity_t handle_ = 0;
 };
 
+/// Returns the samples that a reader has lent, also if their use throws.
+struct Loan {
+  Loan(dds_entity_t from, void** lent, int number) : reader(from), samples(lent), count(number) {}
+  ~Loan() {
+    if (count > 0) dds_return_loan(reader, samples, count);
+  }
+  Loan(const Loan&) = delete;
+  Loan& operator=(const Loan&) = delete;
+  dds_entity_t reader;
+  void** samples;
+  int count;
+};
+
 using Qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
 
 inline Qos make_qos() { return Qos(dds_create_qos(), dds_delete_qos); }

@@ -112,11 +112,7 @@ void ClientLink::take(ClientRequests& requests, const std::function<void(const s
     dds_sample_info_t info{};
     const int count = check(dds_take(reader_.get(), &message, &info, 1, 1), "dds_take");
     if (count == 0) return;
-    struct Loan {
-      dds_entity_t reader;
-      void** message;
-      ~Loan() { dds_return_loan(reader, message, 1); }
-    } const loan{reader_.get(), &message};
+    const dds::Loan loan(reader_.get(), &message, 1);
     const auto& request = *static_cast<const msg::Request*>(message);
     if (request.robot_id != robot_id_) continue;
     if (info.valid_data) {

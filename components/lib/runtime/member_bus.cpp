@@ -111,18 +111,18 @@ void MemberBus::take(std::size_t topic_id, const std::function<void(const Sample
     std::array<dds_sample_info_t, kBatch> infos{};
     const int count =
         check(dds_takecdr(readers_[topic_id].get(), data.data(), kBatch, infos.data(), DDS_ANY_STATE), "dds_takecdr");
-    struct Loan {
+    struct Taken {
       std::array<ddsi_serdata*, kBatch>& data;
       std::size_t count;
-      ~Loan() {
+      ~Taken() {
         for (std::size_t i = 0; i < count; ++i) ddsi_serdata_unref(data.at(i));
       }
-    } const loan{data, static_cast<std::size_t>(count)};
-    for (std::size_t i = 0; i < loan.count; ++i) {
+    } const taken{data, static_cast<std::size_t>(count)};
+    for (std::size_t i = 0; i < taken.count; ++i) {
       if (!infos.at(i).valid_data) continue;
       if (const Sample sample = decode(data.at(i)); sample.message) use(sample, infos.at(i).publication_handle);
     }
-    if (loan.count < kBatch) return;
+    if (taken.count < kBatch) return;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 
 #include "configuration/configuration.hpp"
 #include "runtime/host.hpp"
@@ -22,6 +23,9 @@ int report_exception(const std::string& program) {
   } catch (const ConfigurationError& error) {
     say_error(fmt::format("{}: configuration: {}", program, error.what()));
     return exit_status::kConfiguration;
+  } catch (const std::filesystem::filesystem_error& error) {  // what() has the words of the C++ library
+    say_error(fmt::format("{}: {}: {}", program, error.path1().string(), error.code().message()));
+    return exit_status::kSoftware;
   } catch (const std::exception& error) {
     say_error(fmt::format("{}: {}", program, error.what()));
     return exit_status::kSoftware;

@@ -76,6 +76,8 @@ int main(int argc, char** argv) {
     // The options after `host NAME...` belong to constrictor_host.
     const std::string first = argc > 1 ? argv[1] : "";
     const std::string second = argc == 3 ? argv[2] : "";
+    if (first == "host" || first == "dashboard" || first == "conform" || first == "camera")
+      refuse_empty_arguments(argc, argv);
     if (first == "host" && second != "--help" && second != "-h") return cli::host_command(argc - 2, argv + 2);
     if (first == "dashboard") return cli::dashboard_command(argc - 2, argv + 2);
     if (first == "conform") return cli::conform_command(argc - 2, argv + 2);

@@ -52,6 +52,15 @@ Scheduling join(const Scheduling& a, const Scheduling& b) {
   return both;
 }
 
+std::vector<std::string> read_environment(Configuration& entry) {
+  std::vector<std::string> variables = entry.texts("environment");
+  for (const std::string& variable : variables) {
+    if (variable.find('=') == std::string::npos || variable.front() == '=')
+      throw entry.error("environment", fmt::format("found '{}', accepted NAME=VALUE", variable));
+  }
+  return variables;
+}
+
 }  // namespace
 
 LaunchManifest load_manifest(const std::filesystem::path& file) {
@@ -76,7 +85,7 @@ LaunchManifest load_manifest(const std::filesystem::path& file) {
     process.program = entry.text("program", {}, "");
     process.restarts = static_cast<int>(entry.integer("restarts", 0, 1'000'000, process.restarts));
     process.host = entry.text("host", {}, "");
-    if (entry.has("environment")) process.environment = entry.texts("environment");
+    if (entry.has("environment")) process.environment = read_environment(entry);
     const bool has_latency = entry.has("latency_ticks");
     const auto latency = static_cast<std::uint16_t>(entry.integer("latency_ticks", 1, kLargestLatency_ticks, 1));
     Configuration configs = entry.section("config", false);

@@ -151,7 +151,7 @@ class Launcher {
     companions_->poll();
     if (view_) view_->poll();
     const RunView& view = observer_.view();
-    note_.set_seed(view.seed(options_.seed));
+    note_.set_seed(view.seed(options_.seed), [this](const auto& line) { log_.warn(line); });
     supervisor_.run_is_at(view.tick, view.held());
     log_.at(view);
     bound_logs(report_dir_ / "logs");

@@ -15,8 +15,12 @@ namespace constrictor::cli {
 /// processes that call this at the same time get different directories. Throws std::filesystem::filesystem_error.
 std::filesystem::path make_new_directory(const std::filesystem::path& wanted);
 
+/// Makes sure that the disk of the folder has room for the files of a run. Otherwise removes the folder if it is empty,
+/// and throws std::runtime_error.
+void require_space(const std::filesystem::path& folder);
+
 /// The directory for the report of a run, as an absolute path: options.report_dir, without the files of an earlier run,
-/// or else a new one in runs/, named by the scenario. Throws std::filesystem::filesystem_error.
+/// or else a new one in runs/, named by the scenario. Throws std::filesystem::filesystem_error, and as require_space().
 std::filesystem::path make_report_dir(const RunOptions& options, const std::filesystem::path& scenario);
 
 /// Adds the options that `run`, `check` and `serve` share: those that name files, and the seed.

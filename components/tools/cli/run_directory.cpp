@@ -1,7 +1,9 @@
-// The directory of a new run.
+// The directory of a run.
+#include <fcntl.h>
 #include <fmt/chrono.h>
-
 #include <fmt/format.h>
+
+#include <cstring>
 #include <ctime>
 
 #include "cli/run_command.hpp"
@@ -20,6 +22,22 @@ fs::path make_new_directory(const fs::path& wanted) {
   for (int number = 2; !fs::create_directory(directory); ++number)
     directory = fmt::format("{}-{}", wanted.string(), number);
   return directory;
+}
+
+void require_space(const fs::path& folder) {
+  constexpr off_t kLeast = 16 << 20;  // [byte] the checkpoint, the logs and the report of a short run
+  const fs::path probe = folder / ".space";
+  // Whether a quota leaves this room is only found by taking it.
+  const Descriptor file(::open(probe.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  const int error = file.open() ? ::posix_fallocate(file.get(), 0, kLeast) : errno;
+  std::error_code ignored;
+  fs::remove(probe, ignored);
+  if (error == 0 || error == EOPNOTSUPP) return;
+  fs::remove(folder, ignored);  // if it was made for this run and is empty
+  throw std::runtime_error(
+      fmt::format("{}: found no room for a file of {} MiB ({}); a run needs it for its checkpoint, "
+                  "logs and report. Remove files, or name a folder on another disk with --report",
+                  folder.string(), kLeast >> 20, std::strerror(error)));
 }
 
 fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
@@ -43,6 +61,7 @@ fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {
     fs::remove(dir / old);
   remove_checkpoints(dir);
   remove_swaps(dir);
+  require_space(dir);
   return fs::absolute(dir);
 }
 

@@ -144,6 +144,14 @@ TEST(Manifest, ReadsProcesses) {
   EXPECT_EQ(manifest.config_files.at("b").filename(), "b.yaml");
 }
 
+TEST(Manifest, RefusesAVariableWithoutAValueOrAName) {
+  for (const char* variable : {"X", "=1"}) {
+    EXPECT_EQ(
+        File(std::string(kHead) + "  - components: [physics]\n    environment: [A=1, " + variable + "]\n").error(),
+        ":6: processes[0].environment: found '" + std::string(variable) + "', accepted NAME=VALUE");
+  }
+}
+
 TEST(Manifest, RefusesManifestsThatDoNotDescribeARun) {
   EXPECT_EQ(File(std::string(kHead) + "  - components: [a]\n").error(),
             ":1: plant: found physics, accepted a component of processes");

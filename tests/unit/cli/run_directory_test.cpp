@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/run_command.hpp"
+#include "support/small_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::cli {
@@ -28,6 +29,19 @@ TEST(RunDirectory, IsANewOneForEachOfManySimultaneousCalls) {
   for (auto& path : made) threads.emplace_back([&] { path = make_new_directory(folder.path() / "runs/r"); });
   for (auto& thread : threads) thread.join();
   EXPECT_EQ(std::set<fs::path>(made.begin(), made.end()).size(), made.size());
+}
+
+TEST(RunDirectory, IsRefusedAndRemovedIfItsDiskHasNoRoom) {
+  const testing::TemporaryFolder folder;
+  RunOptions options;
+  options.report_dir = folder.path() / "report";
+  {
+    const testing::SmallDisk disk(1 << 20);
+    EXPECT_THROW((void)make_report_dir(options, "short.yaml"), std::runtime_error);
+  }
+  EXPECT_FALSE(fs::exists(options.report_dir));
+  EXPECT_EQ(make_report_dir(options, "short.yaml"), options.report_dir);
+  EXPECT_TRUE(fs::is_empty(options.report_dir)) << "the file that took the room is left";
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 // MCAP files: what is written is read, a file is continued where it ended, a full disk leaves a complete file.
 #include <fcntl.h>
-#include <signal.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include "mcap_fixture.hpp"
+#include "support/small_disk.hpp"
 
 namespace constrictor::mcap {
 namespace {
@@ -131,11 +130,8 @@ TEST_F(McapFile, RepairsTheIndexesOfTheLastChunk) {
 }
 
 TEST_F(McapFile, IsCompleteUpToTheFullDisk) {
-  ::signal(SIGXFSZ, SIG_IGN);
   std::mt19937 random(3);
   std::vector<Line> written;
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   {
     Writer writer(file(), "", "test");
     const std::uint16_t channel = writer.add_channel(0, "noise", "cdr");
@@ -147,13 +143,11 @@ TEST_F(McapFile, IsCompleteUpToTheFullDisk) {
     };
     for (int i = 0; i < 50; ++i) add();
     writer.close_chunk();
-    const rlimit limit{writer.size() + Writer::kReserve + 30'000, before.rlim_max};
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+    const testing::SmallDisk disk(writer.size() + Writer::kReserve + 30'000);
     for (int i = 0; i < 50; ++i) add();
     EXPECT_THROW(writer.close_chunk(), DiskFull);
     written.resize(50);
     writer.finish({{"dropped", {{"tick", "50"}}}});
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   }
   Reader reader(file());
   EXPECT_EQ(lines_of(reader), written);

@@ -2,9 +2,8 @@
 #include "sim/report/files.hpp"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 
+#include "support/small_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::report {
@@ -46,21 +45,17 @@ TEST(Journal, ReportsAFileThatWasCutOrRemoved) {
 TEST(Journal, EndsAtItsLastWholeLineIfTheDiskIsFull) {
   const testing::TemporaryFolder folder;
   const auto file = folder.path() / "a.csv";
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit limit{10, before.rlim_max};
-  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
   std::uint64_t length = 0;
   {
     Journal journal(file);
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
-    journal.append("the 1st\n", length);
-    EXPECT_THROW(journal.append("the 2nd\n", length), NotWritten);
-    journal.append("the 3rd\n", length);  // would leave a gap
-    ::setrlimit(RLIMIT_FSIZE, &before);
+    {
+      const testing::SmallDisk disk(10);
+      journal.append("the 1st\n", length);
+      EXPECT_THROW(journal.append("the 2nd\n", length), NotWritten);
+      journal.append("the 3rd\n", length);  // would leave a gap
+    }
     journal.append("the 4th\n", length);
   }
-  ::signal(SIGXFSZ, handler);
   EXPECT_EQ(length, 8U);
   Journal restarted(file);
   EXPECT_EQ(restarted.read(length), "the 1st\n");

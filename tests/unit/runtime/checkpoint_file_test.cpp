@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 #include <random>
 
 #include "runtime/hash_log.hpp"
+#include "support/small_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor {
@@ -221,28 +221,10 @@ TEST_F(CheckpointFileTest, ACopyOnTheDiskContainsTheSame) {
   EXPECT_EQ(MadeUpRun::fault(*found), "");
 }
 
-/// Limits the size of every file of this process, so that writes fail as they do on a full disk.
-class SmallDisk {
- public:
-  explicit SmallDisk(rlim_t bytes) {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    ::signal(SIGXFSZ, SIG_IGN);
-    rlimit limit = before_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~SmallDisk() { ::setrlimit(RLIMIT_FSIZE, &before_); }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-
- private:
-  rlimit before_{};
-};
-
 TEST_F(CheckpointFileTest, AFullDiskIsAnErrorAndNotTheEndOfTheProcess) {
   CheckpointFile file(path_);
   file.write({"small", {blob_of("x")}});
-  const SmallDisk disk(file.size());
+  const testing::SmallDisk disk(file.size());
   EXPECT_THROW(file.write({"large", {blob_of(std::string(3 * file.size(), 'x'))}}), std::runtime_error);
 }
 
@@ -254,7 +236,7 @@ void log_tick(HashLog& log, std::int64_t tick) {
 }
 
 TEST_F(CheckpointFileTest, AHashLogOnAFullDiskSaysWhereItEnds) {
-  const SmallDisk disk(4000);
+  const testing::SmallDisk disk(4000);
   HashLog log(folder_.path());
   std::string failure;
   std::int64_t tick = 0;
