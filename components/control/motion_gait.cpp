@@ -15,7 +15,7 @@ struct Kind {
   std::string_view name;
   MotionParameters ControlConfig::*parameters;
   bool has_choice;  ///< its method is a parameter
-  bool lifts;       ///< the base of the U is raised. A raised base is no keel: not where the robot must not drift aside
+  bool lifts;       ///< the base of the U is raised; if the robot must not drift aside, the base stays on the ground
 };
 constexpr Kind kKinds[] = {
     {"travel", &ControlConfig::travel, true, false},   {"carry", &ControlConfig::carry, true, true},

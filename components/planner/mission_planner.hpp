@@ -180,8 +180,8 @@ class MissionPlanner {
   }
   /// [m] from the head to wanted_place(); infinite if there is none.
   [[nodiscard]] double remembered_m(const PlannerInputs& inputs) const;
-  /// [rad] turn, positive left, after which the course leads to the remembered object or zone, or along the line in the
-  /// wanted direction; empty: none of them is remembered.
+  /// [rad] by how much the robot must turn, positive left, until its course leads to the remembered object or zone, or,
+  /// if the state wants the line, along the line in the wanted direction. Empty if what is wanted is not remembered.
   [[nodiscard]] std::optional<double> wanted_turn_rad(const PlannerInputs& inputs) const;
   /// Whether a turn may end: the course has the wanted direction, or has passed it.
   [[nodiscard]] bool has_turned(const PlannerInputs& inputs) const;

@@ -16,9 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Greatest CPU time of a process for a second of simulated time, as a share of the CPU time that the physics alone
-/// needs for it in the same run of the benchmarks, and greatest memory. A share does not depend on the speed of the
-/// machine. Both are 1.3 times the measured values; README.md says how to derive them again.
+/// What a process may need at most. `share` limits its CPU time for a second of simulated time: it is divided by the
+/// CPU time of the benchmark that runs the physics by itself, measured in the same run of the benchmarks, so that it
+/// does not depend on the speed of the machine. Both limits are 1.3 times the measured values; README.md says how to
+/// derive them again.
 struct Budget {
   double share;
   double pss_mib;  ///< proportional set size: memory that processes share counts in parts

@@ -12,8 +12,8 @@ using WaitClock = std::chrono::steady_clock;
 /// A client that waits for a message looks again after this time.
 inline constexpr std::chrono::milliseconds kPoll{10};
 
-/// When a writer discovers a reader, it sends the messages that it keeps for late readers. They arrive within this time
-/// of each other.
+/// When a writer discovers a reader, it sends the messages that it keeps for late readers. The time between two of them
+/// is shorter than this: if nothing has arrived for so long, all have arrived.
 inline constexpr std::chrono::milliseconds kQuiet{300};
 
 /// Waits until nothing new has arrived for the time `quiet` and `enough()` holds, at most until `bound` has passed.

@@ -52,7 +52,8 @@ void PublishedNote::set_seed(std::uint64_t seed, const std::function<void(const 
   try {
     write();
   } catch (const std::exception& error) {
-    warn(fmt::format("the note of this run still names the seed from before the reset: {}", error.what()));
+    warn(fmt::format("the note of this run keeps the seed from before the reset, because it cannot be rewritten: {}",
+                     error.what()));
   }
 }
 

@@ -185,7 +185,8 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
   table_ += checkpoint.head;
   const Part table = put(table_.data(), table_.size());
   Slot& next = slot(number_);
-  // The order matters only to a process that is killed between two stores, hence to the compiler.
+  // The order of these stores matters only if the process is killed between two of them. What the kernel then keeps is
+  // in program order; only the compiler must not change it.
   next.checksum = ~next.own_checksum();
   std::atomic_signal_fence(std::memory_order_seq_cst);
   next.number = number_;

@@ -39,7 +39,7 @@ std::string prepare_checkpoint(const std::filesystem::path& folder);
 /// Removes the checkpoints of a run that is over.
 void remove_checkpoints(const std::filesystem::path& folder);
 
-/// Whether a run that did not end in order can be continued. `checkpoints`: it keeps some.
+/// Whether a run that was interrupted can be continued. `checkpoints`: the run was started with checkpoints.
 [[nodiscard]] bool is_continuable(const LaunchManifest& manifest, const std::filesystem::path& folder,
                                   bool checkpoints);
 /// Throws ConfigurationError if the run has programs beside it: their state has ended with their launcher.

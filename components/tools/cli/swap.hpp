@@ -23,7 +23,7 @@ void write_swap(const std::filesystem::path& report_dir, const ProcessPlan& proc
 /// Removes what an earlier run in this directory has left.
 void remove_swaps(const std::filesystem::path& report_dir);
 
-/// The command line with the program that `constrictor swap` has named, if it has.
+/// The same command line, but with the program that the user has given to `constrictor swap`, if there is one.
 [[nodiscard]] CommandLine with_swaps(CommandLine command_line, const std::filesystem::path& report_dir);
 
 }  // namespace constrictor::cli

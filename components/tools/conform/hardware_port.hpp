@@ -1,4 +1,5 @@
-// A plant outside the barrier, on the topics hardware/*. This process takes the place of plant_relay.
+// The connection to a driver that is no member of the run: the topics hardware/*. This process takes the place of
+// plant_relay, to which the driver would talk otherwise.
 #pragma once
 
 #include <cstdint>

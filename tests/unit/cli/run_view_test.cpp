@@ -85,7 +85,7 @@ TEST(RunView, IgnoresKeptMessagesOfTheEpochBeforeInAnyOrder) {
   }
 }
 
-// The plant's own status comes late if a report in its process draws a figure first.
+// If the component `report` runs in the plant's process, it draws its figure before the plant's status is published.
 TEST(RunView, TheRunIsOverOnceAnyMemberHasEndedInThePresentEpoch) {
   RunView view;
   EXPECT_FALSE(view.run_is_over());
