@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstring>
 #include <ctime>
 
@@ -25,19 +26,23 @@ fs::path make_new_directory(const fs::path& wanted) {
 }
 
 void require_space(const fs::path& folder) {
-  constexpr off_t kLeast = 16 << 20;  // [byte] the checkpoint, the logs and the report of a short run
-  const fs::path probe = folder / ".space";
-  // Whether a quota leaves this room is only found by taking it.
-  const Descriptor file(::open(probe.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
-  const int error = file.open() ? ::posix_fallocate(file.get(), 0, kLeast) : errno;
+  constexpr std::uintmax_t kLeast = 16 << 20;  // [byte] the checkpoint, the logs and the report of a short run
+  constexpr off_t kCheckpoint = 1 << 20;       // [byte] without a checkpoint of this size, the plant cannot start
   std::error_code ignored;
-  fs::remove(probe, ignored);
+  int error = fs::space(folder, ignored).available < kLeast ? ENOSPC : 0;
+  if (error == 0) {
+    // Whether a quota leaves room is only found by taking it.
+    const fs::path probe = folder / ".space";
+    const Descriptor file(::open(probe.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+    error = file.open() ? ::posix_fallocate(file.get(), 0, kCheckpoint) : errno;
+    fs::remove(probe, ignored);
+  }
   if (error == 0 || error == EOPNOTSUPP) return;
   fs::remove(folder, ignored);  // if it was made for this run and is empty
   throw std::runtime_error(
-      fmt::format("{}: found no room for a file of {} MiB ({}); a run needs it for its checkpoint, "
-                  "logs and report. Remove files, or name a folder on another disk with --report",
-                  folder.string(), kLeast >> 20, std::strerror(error)));
+      fmt::format("{}: {}; a run needs {} MiB for its checkpoint, logs and report. Remove files, or name a folder on "
+                  "another disk with --report",
+                  folder.string(), std::strerror(error), kLeast >> 20));
 }
 
 fs::path make_report_dir(const RunOptions& options, const fs::path& scenario) {

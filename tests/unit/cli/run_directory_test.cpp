@@ -36,7 +36,7 @@ TEST(RunDirectory, IsRefusedAndRemovedIfItsDiskHasNoRoom) {
   RunOptions options;
   options.report_dir = folder.path() / "report";
   {
-    const testing::SmallDisk disk(1 << 20);
+    const testing::SmallDisk disk(1 << 19);
     EXPECT_THROW((void)make_report_dir(options, "short.yaml"), std::runtime_error);
   }
   EXPECT_FALSE(fs::exists(options.report_dir));
