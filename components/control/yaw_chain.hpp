@@ -55,9 +55,10 @@ class YawChain {
   [[nodiscard]] LinkArray weights(const LinkArray& shape_rad, const WaveWeights& weights) const;
 
   /// Yaw joint angles of the wave on the posture:
-  /// H_k = Theta_k + kappa X_k + A w_k cos(2 pi X_k / lambda + phase), q_k = H_k - H_{k+1}.
-  /// Source: serpenoid curve (Hirose) sampled at rigid links. The weights, and the common X of both arms of a U, are
-  /// this project's own.
+  /// H_k = Theta_k + kappa X_k + A w_k cos(2 pi Y_k / lambda + phase), q_k = H_k - H_{k+1}, with
+  /// Y_k = field X_k + (1 - field) S_k. Theta_k: headings(); X_k: coordinates(); S_k: arc_coordinates(); w_k:
+  /// weights(). Source: serpenoid curve (Hirose) sampled at rigid links. The weights are this project's own, and so is
+  /// X_k, which is the same for both arms of a U.
   [[nodiscard]] LinkArray joint_angles(const LinkArray& shape_rad, const Wave& wave, const WaveWeights& weights) const;
 
   /// A posture that was moved along the body by `distance_m` towards the head (negative: towards the tail). Joint k

@@ -8,9 +8,10 @@
 
 namespace constrictor::perception {
 
-/// Gives each low object of known size (`sizes`) that stands on a zone of its own colour a region of its own, marked as
-/// `low` and `on_zone`. Such an object hides the far rim of the zone and rises above it: the columns in which it does
-/// so are as wide as the object. `rgb` is the smoothed image.
+/// Finds low objects of known size (`sizes`) that stand on a zone of the same colour. Moves each of them from the
+/// region of the zone into a separate region, which is marked as `low` and `on_zone`. Such an object hides the far rim
+/// of the zone: the columns in which it rises above the rim are together as wide as the object. `rgb` is the smoothed
+/// image.
 void split_objects_from_zones(const cv::Mat& rgb, const GroundCamera& camera, const PerceptionConfig& config,
                               const ObjectSizes& sizes, Regions& regions);
 

@@ -1,5 +1,5 @@
-// red_first: an external planner on the installed package that retrieves the objects in its own order: red before
-// green. It reads topics as an observer, takes authority, and starts the tasks of the task layer.
+// red_first: an external planner that is built with the installed package. It retrieves the objects in an order of its
+// own, red before green. It reads topics as an observer, takes authority, and starts the tasks of the task layer.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>

@@ -40,7 +40,7 @@ struct PhysicsConfig : PlantParameters {
           "Greatest velocity at which bodies that overlap leave each other"),
       add(solver.one_ground_contact_a_joint, "solver.one_ground_contact_a_joint",
           SolverSettings{}.one_ground_contact_a_joint,
-          "true: at a joint only the front module touches the ground, to save CPU time (see README.md)")};
+          "true: at a joint only the module behind it touches the ground, to save CPU time (see README.md)")};
   GateLimits command = add_gate_limits(command);
   std::vector<double> stop_at_ticks =
       add(stop_at_ticks, "stop_at_ticks", {}, "ticks", {1, 1e9}, {0, 64},

@@ -22,9 +22,9 @@ struct SolverSettings {
   double creep_resistance_n_s_m = 1e4;  ///< chain: friction within its bound for the velocity of creeping
   double surface_layer_m = 0.001;       ///< [m] depth at which contacts may rest without correction
   double max_correcting_velocity_m_s = 1.0;
-  /// The caps of two neighbouring modules coincide at their joint. If true, only the cap of the front module touches
-  /// the ground there; a module then turns without friction, and odometry is less exact. The README of sim/physics says
-  /// how much CPU time that saves.
+  /// The caps of two neighbouring modules coincide at their joint. If true, only the front cap of the module behind
+  /// the joint touches the ground there; a module then turns without friction, and odometry is less exact. The README
+  /// of sim/physics says how much CPU time that saves.
   bool one_ground_contact_a_joint = false;
   std::uint32_t reorder_seed = 1;  ///< ode: seed of QuickStep's random order of constraints
 };

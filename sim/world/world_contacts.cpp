@@ -51,8 +51,9 @@ void World::collide() {
 void World::touch_ground(std::size_t module) {
   const Capsule& capsule = capsules_[module];
   // The skin slides easily along the projection of the module's axis on the ground, as it is in the middle of the step.
-  // If it were that of the beginning, friction would hold a module that turns while it moves beside its track, by the
-  // speed times half of the angle of a step. The joints would work against each other: 20 % more torque at 4 ms.
+  // With the axis of the beginning of the step, a module that turns would seem to slide sideways, at its speed times
+  // half of the angle by which it turns in the step. Friction would oppose this false motion, and the joints would work
+  // against each other: 20 % more torque at 4 ms.
   Vector3d along = capsule.front - capsule.back;
   along += 0.5 * settings_.step_s * dynamics_->body(module).angular_velocity_rad_s.cross(along);
   along.z() = 0.0;

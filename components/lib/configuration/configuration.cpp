@@ -81,7 +81,7 @@ YAML::Node value_of(const YAML::Node& map, std::string_view key) {
 
 bool present(const YAML::Node& node) { return node.IsDefined() && !node.IsNull(); }
 
-/// Rejects keys that are lists or maps, and equal keys: yaml-cpp silently keeps the last of two equal keys.
+/// Rejects keys that are lists or maps, and equal keys: yaml-cpp silently uses only one of two equal keys.
 void reject_odd_keys(const YAML::Node& map, const std::string& file, const std::string& path) {
   std::set<std::string> seen;
   for (const auto& entry : map) {

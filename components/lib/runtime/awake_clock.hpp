@@ -6,8 +6,9 @@
 
 namespace constrictor {
 
-/// A clock that must be read several times a second. If it was not read for longer, the process did not run (SIGSTOP, a
-/// stopped virtual machine), and neither did perhaps those for which it waits: such a gap counts as 1 s at most.
+/// A clock that almost stands still while the process is stopped, so that a wait for others does not end too early.
+/// Read it several times a second: a gap of more than 1 s between two readings means that this process did not run
+/// (SIGSTOP, a stopped virtual machine), and perhaps the others did not run either. Such a gap counts as 1 s.
 class AwakeClock {
  public:
   using Base = std::chrono::steady_clock;

@@ -36,8 +36,8 @@ struct ReplayResult {
 /// Makes the factory of a component; nothing if there is no such component.
 using FindFactory = std::function<std::optional<ComponentFactory>(const std::string& name)>;
 
-/// Functions that a replay calls with the messages that it reads and computes. A function may end the replay by an
-/// exception.
+/// Functions that a replay calls with the messages that it reads, and with the images that it computes again. It passes
+/// no other computed message on. A function may end the replay by an exception.
 struct ReplayHooks {
   std::function<void(const mcap::Channel&, const mcap::Message&)> message;  ///< each one, in the order of the file
   /// Called with each image that was not recorded and has been computed again.

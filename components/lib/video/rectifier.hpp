@@ -8,8 +8,8 @@
 
 namespace constrictor::video {
 
-/// The place (u, v) in the distorted image at which the pin-hole camera `ideal` sees its own place (u, v). Both in
-/// pixels of `real` and `ideal`, with pixel centres at +0.5.
+/// The pixel of the camera `real`, in its distorted image, that shows what the pixel `pixel` shows in the image of the
+/// pin-hole camera `ideal`. Pixels are (u, v), with pixel centres at +0.5.
 [[nodiscard]] Eigen::Vector2d distorted(const CameraCalibration& real, const CameraCalibration& ideal,
                                         const Eigen::Vector2d& pixel);
 

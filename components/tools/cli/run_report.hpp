@@ -34,9 +34,9 @@ struct RunVerdict {
 /// Merges `report_dir`/mission.json, if the report component wrote it, with `outcome`, `view` and `processes` into
 /// `report_dir`/report.json. The run is a success if mission.json reports one and there is no error. The reason is the
 /// first of these texts that is not empty: the error, the reason in mission.json (which the figure also shows), the end
-/// reason. If all are empty, it says that no reason is known. `hosts`: HostSet::report(). The file truth.json of
-/// emulated devices becomes the key `truth`; it does not decide the success. A report.json that cannot be written is
-/// named in the verdict.
+/// reason. If all are empty, it says that the report component gave no reason, or that none judged the mission.
+/// `hosts`: HostSet::report(). The file truth.json of emulated devices becomes the key `truth`; it does not decide the
+/// success. A report.json that cannot be written is named in the verdict.
 RunVerdict write_report(const std::filesystem::path& report_dir, const RunOutcome& outcome, const RunView& view,
                         const std::vector<ProcessRecord>& processes, const nlohmann::ordered_json& hosts = {});
 

@@ -174,9 +174,9 @@ class Teleop {
 
 int teleop(const TeleopOptions& options) {
   if (!options.drive.empty()) return teleop_drive(options.drive, options.duration, options.run);
-  if (!options.duration.empty()) throw UsageError("--for: accepted together with --drive");
+  if (!options.duration.empty()) throw UsageError("--for: accepted only together with --drive");
   if (!options.gamepad.device.empty()) return gamepad_drive(options.gamepad, options.run);
-  if (!options.gamepad.mapping.empty()) throw UsageError("--mapping: accepted together with --gamepad");
+  if (!options.gamepad.mapping.empty()) throw UsageError("--mapping: accepted only together with --gamepad");
   const RunNote run = join_run(options.run);
   int status = exit_status::kOk;
   std::string over;

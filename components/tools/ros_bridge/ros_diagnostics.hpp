@@ -37,8 +37,8 @@ class Health {
 
   void take(const msg::Tick& tick);
   void take(const msg::RunState& state);
-  /// Ignored are statuses that break the IDL, those of an older incarnation than the newest one, and those of more
-  /// components than a run can have.
+  /// Ignores a status that breaks the IDL, and one of an older incarnation than the newest one. Ignores the status of a
+  /// further component if there are already as many components as a run can have.
   void take(const msg::ComponentStatus& status);
 
   /// One status for each component, one for the run and one for the bridge, stamped with the newest tick. Levels:

@@ -176,7 +176,7 @@ void Agent::start(const nlohmann::json& message) {
   const auto name = field<std::string>(message, "name");
   const auto incarnation = field<std::uint32_t>(message, "incarnation");
   const auto program = field<std::string>(message, "program");
-  if (!is_plain_name(name)) throw ProtocolError("name: found \"" + name + "\", accepted a plain name");
+  if (!is_plain_name(name)) throw ProtocolError("name: found \"" + name + "\", accepted " + kPlainName);
   if (!prepared_) throw ProtocolError("start: accepted only after prepare");
   Managed& process = processes_[name];
   if (incarnation <= process.incarnation) return;                           // a repeated request

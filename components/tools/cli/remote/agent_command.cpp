@@ -103,7 +103,7 @@ int agent(const AgentOptions& options) {
     fmt::print("{}\n", json_text(describe_this_host(), 1));
     return exit_status::kOk;
   }
-  if (!is_plain_name(options.token)) throw UsageError("--token: found '" + options.token + "', accepted a plain name");
+  if (!is_plain_name(options.token)) throw UsageError("--token: found '" + options.token + "', accepted " + kPlainName);
   ::signal(SIGPIPE, SIG_IGN);
   try {
     Descriptor connection = connect_to_agent(options.token);

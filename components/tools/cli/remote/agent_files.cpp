@@ -167,7 +167,7 @@ void Agent::store_keys(const nlohmann::json& message) {
     write_private(folder_ / "keys" / path, text);
   }
   for (const auto& identity : field<std::vector<std::string>>(message, "identities")) {
-    if (!is_plain_name(identity)) throw ProtocolError("identities: found \"" + identity + "\", accepted a plain name");
+    if (!is_plain_name(identity)) throw ProtocolError("identities: found \"" + identity + "\", accepted " + kPlainName);
     const std::string problem = dds::problem_of_identity(folder_ / "keys", identity);
     if (!problem.empty()) throw std::runtime_error("DDS Security: " + problem);
   }

@@ -86,8 +86,8 @@ void HostSet::compare() const {
   }
   if (!all.empty())
     throw HostError(
-        "the hosts differ, so that a run would not have the result of one host; install the same release "
-        "and packages on all hosts:" +
+        "the hosts differ, so a run on them could have another result than a run on one host; install the same "
+        "release and packages on all hosts:" +
         all);
 }
 

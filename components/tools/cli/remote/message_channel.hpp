@@ -76,7 +76,9 @@ T field(const nlohmann::json& message, const char* name) {
   }
 }
 
-/// Whether a text may name a file of a run or a process: letters, digits, '.', '_', '-', '+'; not hidden, no path.
+/// What is_plain_name() accepts, for messages to people.
+inline constexpr const char* kPlainName = "1 to 200 letters, digits and . _ - +, not beginning with a dot";
+/// Whether a text may name a file of a run or a process: neither a path nor a hidden file.
 [[nodiscard]] bool is_plain_name(const std::string& name);
 /// Whether a text is a relative path of plain names.
 [[nodiscard]] bool is_plain_path(const std::string& path);
