@@ -19,7 +19,7 @@ namespace {
 // and with less than the second one less than a quarter.
 constexpr double kLeastRange_rad = 0.18, kEnoughRange_rad = 0.25;  // to each side
 constexpr double kLeastTorque_nm = 0.45, kEnoughTorque_nm = 0.6;
-// Of three missions with 1 Nm/rad none succeeds, with 2 and with 3 one, with 6 and more all (`short`).
+// Missions `short`, three for each value: with 1 Nm/rad none succeeds, with 2 and with 3 one of three, from 6 on all.
 constexpr double kLeastGain_nm_rad = 1.5, kEnoughGain_nm_rad = 6.0;
 constexpr double kLeastRate = 0.17, kEnoughRate = 0.212;  // by the rate of the wave at its highest frequency
 

@@ -61,9 +61,9 @@ class Gauge {
   /// object than below it: below the object is the object's foot, then, and no edge of the flat part.
   [[nodiscard]] bool is_behind_object(double left, double right) const;
 
-  /// Whether the lower edge of an object at this range [m] is rather the edge of a zone of its colour before it, which
-  /// is so thin in the image that nothing else tells: at that range the object would be narrower than each one that is
-  /// known.
+  /// `range_m`: the range that follows from the lower edge of the object. Returns whether this edge belongs in truth to
+  /// a zone of the same colour in front of the object, which is too thin in the image to be seen as a zone. The sign of
+  /// it is that at this range the object would be narrower than every known object. Always false up to 1.5 m.
   [[nodiscard]] bool ends_in_zone(double range_m) const;
 
   /// [m] horizontal distance of an object of this size by its width; NaN if the size is not known.

@@ -39,9 +39,9 @@ struct DroppedObject {
   /// where the robot let it go.
   std::uint16_t newest_handle = 0;
   std::int64_t released_tick = -1;  ///< last tick in which the body held the object, or left it
-  /// The robot may have pushed the object away from the place where the map still has it. Of several landmarks that may
-  /// be the object and whose verdict is certain, the one that was seen last counts. The verdict on a landmark that is
-  /// outside of its zone by three standard deviations is certain, even if its place is imprecise.
+  /// True: the robot may have pushed the object away from the place where the map still has it. Two rules then change.
+  /// If several landmarks may be the object and have a certain verdict, the one that was seen last counts. A landmark
+  /// that lies outside its zone by three standard deviations is kOutside, even if its place is imprecise.
   bool may_have_moved = false;
   std::vector<std::uint16_t> others{};  ///< handles of other objects of this colour, which it is not
 };

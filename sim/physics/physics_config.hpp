@@ -32,7 +32,7 @@ struct PhysicsConfig : PlantParameters {
           {0.0, 1e6}, Changes::kAtStart, "Damping of each contact"),
       add(solver.creep_resistance_n_s_m, "solver.creep_resistance_n_s_m", SolverSettings{}.creep_resistance_n_s_m,
           "N s/m", {100.0, 1e9}, Changes::kAtStart,
-          "chain: bodies that friction F holds creep at the speed F / (value of this parameter)"),
+          "chain: a force F that friction can hold lets the body creep at F / (value of this parameter)"),
       add(solver.surface_layer_m, "solver.surface_layer_m", SolverSettings{}.surface_layer_m, "m", {0.0, 0.01},
           kAtStart, "Depth at which contacts may rest without correction"),
       add(solver.max_correcting_velocity_m_s, "solver.max_correcting_velocity_m_s",

@@ -34,8 +34,8 @@ inline constexpr std::uint8_t kZonesAnywhere = 1;     ///< anywhere along the li
 /// The names of these values in configuration.
 [[nodiscard]] inline std::vector<std::string> zones_at_names() { return {"beginning", "anywhere"}; }
 
-/// The time limits of the mission [s], all in simulated or robot time. One that is not given keeps the value of the
-/// planner's configuration, which says what follows when it passes.
+/// The time limits of the mission [s], all in simulated or robot time. A limit that is not given keeps the value of
+/// the planner's configuration. sim/scenario_loader/README.md says what happens when each of them passes.
 struct TimeLimits {
   std::optional<double> mission_s;  ///< whole mission
   std::optional<double> search_s;   ///< a search for the line

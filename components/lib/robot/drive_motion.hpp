@@ -13,9 +13,10 @@ struct DriveMotion {
   double curvature_1_m = 0.0;  ///< of the path; positive: to the left
 };
 
-/// Returns the motion with about `speed_m_s` (negative: backwards) and `turn_rad_s` (positive: to the left). Values
-/// that are not finite count as 0. With speed 0 the robot turns nearly on the spot. Source: measured on the simulated
-/// Mamba (curvature 2.25 1/m at 0.63 m/s: about 1.2 rad/s, because the body also slides sideways).
+/// Returns a motion with about `speed_m_s` (negative: backwards), at most 0.9 m/s, and `turn_rad_s` (positive: to the
+/// left). Values that are not finite count as 0. If the path would bend more than 1.5 1/m, also at speed 0, the speed
+/// is ignored and the robot turns nearly on the spot. Source: measured on the simulated Mamba (curvature 2.25 1/m at
+/// 0.63 m/s: about 1.2 rad/s, because the body also slides sideways).
 inline DriveMotion drive_motion(double speed_m_s, double turn_rad_s) {
   constexpr double kRotate_1_m = 2.25;   // curvature of a turn on the spot
   constexpr double kRotate_rad_m = 1.9;  // turn of the robot per metre along this path

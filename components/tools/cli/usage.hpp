@@ -36,8 +36,9 @@ inline constexpr const char* kRunEnvironment =
 inline constexpr const char* kDataEnvironment =
     "CONSTRICTOR_DATA   directory of the default files, instead of the source tree or the install prefix";
 
-/// The last part of a --help: remarks, EXAMPLES (one per line), EXIT STATUS and ENVIRONMENT. Further lines of a text
-/// begin with two spaces.
+/// The last part of a --help: remarks, EXAMPLES (one per line), EXIT STATUS and ENVIRONMENT. If `exit_status` or
+/// `environment` has several lines, the caller begins the second and each further one with two spaces. The lines of
+/// `about` are not indented.
 std::string help_footer(const std::string& about, std::initializer_list<const char*> examples,
                         const std::string& exit_status, const std::string& environment = kRunEnvironment);
 

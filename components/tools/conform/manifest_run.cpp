@@ -77,8 +77,9 @@ void print_log(const fs::path& log, const std::function<void(const std::string&)
 
 namespace {
 
-/// The process of `component` in a manifest, hosting this component only. `is_checked`: it is restarted once, because
-/// the check `restart` kills it.
+/// Returns the manifest entry (YAML) of the process that hosts `component` in the manifest `root`, changed so that it
+/// hosts this component only. `is_checked`: it is restarted once, because the check `restart` kills it. `why`: the key
+/// that the error names if no process has the component.
 std::string process_of(Configuration& root, const std::string& component, const std::string& why, bool is_checked) {
   for (Configuration& entry : root.list("processes")) {
     const auto components = entry.texts("components");
