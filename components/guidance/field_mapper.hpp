@@ -64,8 +64,8 @@ class FieldMapper {
   [[nodiscard]] Eigen::Vector2d position(const Landmark& landmark) const;
   [[nodiscard]] double sd(const Landmark& landmark) const;
   /// Updates, moves or creates the landmark of a blob with a range. `used` marks the landmarks that already have a blob
-  /// in this image. `view`: frame V of the percepts in the head's present frame; `turn_rad`: its yaw in the head at the
-  /// exposure.
+  /// in this image. `view`: frame V of the percepts in the head's present frame; `turn_rad`: yaw of V relative to the
+  /// head at the time of the exposure.
   void place(const msg::Blob& blob, const PlanarPose& view, double turn_rad, std::int64_t tick,
              std::vector<bool>& used);
   /// [m] radius of the landmark that a blob at `z` (in the head's frame) may belong to.

@@ -53,7 +53,7 @@ struct PhysicsConfig : PlantParameters {
   [[nodiscard]] std::vector<std::int64_t> stop_ticks() const { return {stop_at_ticks.begin(), stop_at_ticks.end()}; }
 
   /// Checks that a tick is a whole number of solver steps; otherwise the world's time would drift from that of the
-  /// ticks. Throws ConfigurationError.
+  /// ticks. Also checks that stop_at_ticks are whole numbers in rising order. Throws ConfigurationError.
   void complete(const Configuration& root) const {
     for (std::size_t i = 0; i < stop_at_ticks.size(); ++i) {
       if (stop_at_ticks[i] != std::floor(stop_at_ticks[i]) || (i > 0 && stop_at_ticks[i] <= stop_at_ticks[i - 1]))

@@ -148,11 +148,12 @@ std::pair<Vector6d, Matrix6d> ChainDynamics::momentum() const {
   return {sum, inertia};
 }
 
-// The generalised velocities, which the step keeps or changes, mean another momentum in the new posture. The equations
-// of motion account for it only to the first order of the step, so that a robot in the air would gain momentum from its
-// own motion. What is missing is given to all modules alike, except where the ground holds the robot: there it is the
-// ground's. (If the robot got it, too, a part that swings would lose its energy.) A contact holds along its normal, and
-// in the directions in which friction is below its bound; it resists there as the law of friction does.
+// With the same generalised velocities, the robot has another momentum in the new posture. The equations of motion
+// account for it only to the first order of the step, so that a robot in the air would gain momentum from its own
+// motion. What is missing is given to all modules alike, except where the ground holds the robot: there it is the
+// ground's. (If the robot got it, too, a part that swings would lose its energy.) A contact that presses
+// holds along its normal, and in the directions in which friction is below its bound. In all these directions it
+// resists with creep_resistance_n_s_m.
 void ChainDynamics::restore_momentum(const Vector6d& wanted, std::span<const SolverContact> contacts) {
   auto [found, resistance] = momentum();
   for (std::size_t i = 0; i < contacts.size(); ++i) {

@@ -43,8 +43,8 @@ class ChainSystem {
     double rate_rad_s = 0.0;           ///< before and, once it is solved, after the step
     double change_rad_s = 0.0;         ///< as SystemBody::change
     ServoRow servo;
-    /// A limit of the angle, while the joint is beyond it: a row whose torque has only the sign of `stop_side`. 0:
-    /// none.
+    /// While the angle is beyond a limit, `stop` pushes it back: its torque has only the sign of `stop_side` (+1 or
+    /// -1). If `stop_side` is 0, the angle is within its limits, and `stop` is not used.
     double stop_side = 0.0;
     ServoRow stop;
 

@@ -61,8 +61,8 @@ struct Body {
   double mean_heading_rad = 0.0;
 };
 
-/// [m/s] The speed at which the shape of the body moves along it, by least squares: the angle of a joint changes by the
-/// speed times the difference of its neighbours' angles for each length.
+/// [m/s] The speed at which the shape travels along the body towards the tail, by least squares. The rate of a joint is
+/// this speed times (angle of the joint before it - angle of the joint behind it) / (two link lengths).
 double shape_speed_m_s(const YawChain& chain, const Body& body) {
   double product = 0.0, square = kAllow_rad2;
   for (std::size_t k = 1; k + 1 < chain.joint_count(); ++k) {

@@ -1,4 +1,4 @@
-// Typed DDS readers and writers with the two qualities of service of this project: member and observer.
+// Typed DDS readers and writers with the qualities of service of this project: member, command and observer.
 #pragma once
 
 #include <algorithm>

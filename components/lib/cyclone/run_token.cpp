@@ -59,8 +59,9 @@ std::string read_token_file(const std::filesystem::path& file) {
   std::getline(stream, token);
   const bool printable = std::all_of(token.begin(), token.end(), [](char c) { return c > ' ' && c <= '~'; });
   if (token.empty() || token.size() > kMostLetters || !printable) {
-    throw std::runtime_error(fmt::format("token file {}: accepted 1 to {} printable characters in the first line",
-                                         file.string(), kMostLetters));
+    throw std::runtime_error(
+        fmt::format("token file {}: the first line must be 1 to {} printable ASCII characters without spaces",
+                    file.string(), kMostLetters));
   }
   return token;
 }

@@ -25,7 +25,7 @@ class Reader {
   explicit Reader(const std::filesystem::path& path);
 
   /// Reads everything. Throws Error, which names the byte, if the file is damaged. A file that ends too early is no
-  /// error: see complete().
+  /// error: see incomplete().
   void read(const Visitor& visitor = {});
   /// The same, but damaged records are left out, and `left_out` is called with the offset [byte], the length [byte] and
   /// the reason of each; the length is 0 for an index, which says nothing that the file does not have. Bytes that

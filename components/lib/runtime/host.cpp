@@ -114,7 +114,8 @@ class Host::Impl {
   }
 
   /// A writer whose history is full waits for acknowledgements, which it would not get in the thread that receives
-  /// them. With the configuration of this project none is ever full (WhcHigh); a user's may be another one.
+  /// them. With this project's DDS configuration no history is ever full (WhcHigh). A user's configuration may have
+  /// another limit; this function then returns false.
   [[nodiscard]] bool may_step_in_receiver() const {
     return members_.have_short_steps() && !conductor_ && !std::getenv("CYCLONEDDS_URI");
   }

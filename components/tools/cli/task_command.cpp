@@ -193,7 +193,8 @@ std::chrono::milliseconds parse_duration(const std::string& option, const std::s
                         : unit == "h"                 ? 3600.0
                                                       : 0.0;
   if (end == text.c_str() || factor == 0.0 || !(value > 0.0 && value * factor <= 1e6)) {
-    throw UsageError(fmt::format("{}: found '{}', accepted a duration such as 5s, 500ms, 2m", option, text));
+    throw UsageError(
+        fmt::format("{}: found '{}', accepted a duration such as 5s, 500ms, 2m, at most 1000000s", option, text));
   }
   return std::chrono::milliseconds(std::llround(1e3 * value * factor));
 }

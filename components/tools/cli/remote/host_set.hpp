@@ -27,8 +27,9 @@ struct HostOptions {
   bool resume = false;           ///< this launcher continues the run
 };
 
-/// Adds to the message `prepare` of a host the identities of its processes and their files from `folder`; none if the
-/// folder is empty. Throws HostError if one cannot be read.
+/// Adds identities and their files to `message`, which is the message `prepare` for `host`: those of the processes on
+/// this host that have no keys of their own. The files are read from `folder`; with an empty path nothing is added.
+/// Throws HostError if a file cannot be read.
 void add_keys(const std::filesystem::path& folder, const LaunchManifest& manifest, const std::string& host,
               nlohmann::json& message);
 

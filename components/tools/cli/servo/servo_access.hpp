@@ -41,8 +41,8 @@ class ServoAccess {
   [[nodiscard]] FoundServo find(std::uint8_t id);
   /// The same, but throws also if two devices have this id: both would obey.
   [[nodiscard]] FoundServo find_single(std::uint8_t id);
-  /// Sends to this servo, or to all servos at the port, that its torque is to be switched off: some times, to addresses
-  /// of all known models, and without waiting for an answer.
+  /// Sends to this servo, or to all servos at the port, that its torque is to be switched off: kTries times, to the
+  /// torque addresses of all known models, and without waiting for an answer.
   void order_torque_off(std::optional<std::uint8_t> id);
   /// Whether a device with this id answers.
   [[nodiscard]] bool answers(std::uint8_t id) { return bus_.ping(id, kTries).arrived; }
