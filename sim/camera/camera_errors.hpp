@@ -22,8 +22,8 @@ namespace constrictor {
 [[nodiscard]] ScenePoses extrapolated(const ScenePoses& before, const ScenePoses& now, double share);
 
 /// The errors of one finished image, in the order in which they arise: exposure, lens, white balance and gain,
-/// contrast. It uses integers, square roots and the fixed-point Gaussian filter of OpenCV, so that the bytes are the
-/// same on every processor.
+/// contrast. It uses integers, basic arithmetic, square roots and the fixed-point Gaussian filter of OpenCV, so that
+/// the bytes are the same on every processor.
 class ImageErrors {
  public:
   explicit ImageErrors(const CameraErrorConfig& config) : config_(config) {}

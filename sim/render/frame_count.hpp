@@ -1,4 +1,4 @@
-// The memory of a component that draws images of the simulated world.
+// The state of a component that draws images of the simulated world, for its checkpoint.
 #pragma once
 
 #include <cstdint>

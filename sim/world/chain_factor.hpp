@@ -1,5 +1,5 @@
-// The equations of a chain without a matrix: eliminates one joint after the other, in a time that grows linearly with
-// the number of modules.
+// Solves the equations of a chain without the matrix of the whole chain. It eliminates one joint after the other, in a
+// time that grows linearly with the number of modules.
 #pragma once
 
 #include <Eigen/Cholesky>

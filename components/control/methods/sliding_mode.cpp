@@ -72,8 +72,8 @@ class SlidingMode : public ControlMethod {
   }
 
  private:
-  /// The torques of the pitch joints. The ground, which the law does not know, keeps them straight: its push in the
-  /// estimate of unknown torques made the body rear up. Soft springs without any estimate are enough.
+  /// The torques of the pitch joints: those of soft springs with dampers. The ground keeps these joints straight. An
+  /// estimate of unknown torques would contain the push of the ground, and the torque against it made the body rear up.
   static void give_way(const MethodInput& input, const Axis& axis, Setpoints& setpoints) {
     if (axis.joints.empty()) return;
     const SlidingParameters& law = input.config.sliding;

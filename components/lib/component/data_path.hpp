@@ -11,7 +11,7 @@ namespace constrictor {
 /// share/constrictor of its prefix; for another program the source tree. Only folders that exist.
 [[nodiscard]] std::vector<std::filesystem::path> data_folders();
 
-/// Absolute path of a file that is given relative to the project's root, for example
+/// Path of a file that is given relative to the project's root, for example
 /// "components/control/control.yaml": that of the first of data_folders() that has it. Returns a path in the source
 /// tree if none has it.
 [[nodiscard]] std::filesystem::path data_path(const std::filesystem::path& relative);

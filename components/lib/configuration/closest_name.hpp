@@ -8,8 +8,8 @@
 namespace constrictor {
 
 /// The candidate that is most like `name`, if it is like enough to be what a person meant: at most one wrong, missing,
-/// surplus or swapped letter in three. Else the first candidate that begins with `name`; empty if there is none. Upper
-/// and lower case count as equal.
+/// surplus or swapped letter in three. Upper and lower case count as equal in this comparison. Else the first
+/// candidate that begins with `name`, if this has at least two letters; empty if there is none.
 [[nodiscard]] std::string closest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 /// Whether `found` is easily written for `meant`: one letter of at least four is wrong, missing, surplus or

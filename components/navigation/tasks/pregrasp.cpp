@@ -234,8 +234,9 @@ class Pregrasp : public StatefulTask<PregraspState> {
       lose(input, grip, output, "the object was not touched");
       return;
     }
-    // The touch was too near to the head, or there was none: take another step, a little farther than the last. An
-    // object that lies beside the body already, and was not touched, is farther aside than it looked.
+    // If the touch was too near to the head, the head advances to its target beyond the place that was touched now. If
+    // there was no touch, the next touch movement reaches farther aside, and the target moves on by kStep_m, unless the
+    // object must already lie beside the body.
     if (!state_.felt) {
       ++state_.misses;
       if (past_m(input) < -config.deep_min_m - kStep_m)

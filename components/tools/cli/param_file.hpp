@@ -17,7 +17,8 @@ struct ParameterValue {
 };
 
 /// The parameters as a YAML file that read_parameter_file() reads: one line for each, with unit, accepted values and
-/// meaning as a comment. `title`: a line of text for its beginning. `changed`: only those that were changed.
+/// meaning as a comment. `title`: a line of text for its beginning. `changed`: only those that were changed, or that a
+/// pending request changes.
 [[nodiscard]] std::string parameter_file(const ParameterView& view, const std::string& title, bool changed);
 
 /// Reads and checks a file. Keys may be whole names (`navigation.travel.speed_m_s: 0.9`) or nested, as in the

@@ -27,7 +27,7 @@ void put(std::string_view text) {
   }
 }
 
-/// Waits until the other end of the pipe is closed. If no byte arrived before that, the owner of the terminal has died:
+/// Waits for a byte, or for the end of the pipe. At the end without a byte, the owner of the terminal has died:
 /// restores the terminal.
 [[noreturn]] void guard(int pipe, const termios& before) {
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTTOU, SIGTSTP}) ::signal(number, SIG_IGN);

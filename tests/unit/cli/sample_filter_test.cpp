@@ -82,7 +82,7 @@ TEST(SampleFilter, ErrorsNameWhatWasFoundAndWhatIsAccepted) {
   EXPECT_EQ(problem("visible event"), "found 'event' at column 9, accepted and, or, a comparison, or the end");
   EXPECT_EQ(problem("'x == 3"), "the quote at column 1 has no end");
   EXPECT_EQ(problem(""), "found the end at column 1, accepted a field, a number or a text");
-  EXPECT_EQ(problem(std::string(10'000, '(')), "too many nested parentheses");
+  EXPECT_EQ(problem(std::string(10'000, '(')), "more than 100 nested \"not\" and parentheses");
 }
 
 TEST(SampleView, RoundsAndReplacesArraysByTheirLength) {

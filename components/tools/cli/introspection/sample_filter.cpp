@@ -224,7 +224,7 @@ class Parser {
     return made;
   }
   NodePtr single() {
-    if (++depth_ > kDeepest) throw FilterError("too many nested parentheses");
+    if (++depth_ > kDeepest) throw FilterError(fmt::format("more than {} nested \"not\" and parentheses", kDeepest));
     NodePtr made;
     if (take(Token::Kind::kWord, "not")) {
       made = node(Node::Kind::kNot, "", single());
