@@ -25,7 +25,7 @@ struct PerceptErrorConfig : ParameterSet {
   double line_noise_m = add(line_noise_m, "line_noise_m", 0.0, "m", {0.0, 0.5}, kWhileRunning,
                             "Standard deviation of the lateral position of the line");
   double lasts_s = add(lasts_s, "lasts_s", 0.1, "s", {0.02, 60.0}, kWhileRunning,
-                       "Time for which an error that was chosen at random stays the same; default: that of one image");
+                       "Time for which a random error stays the same; the default is that of one image");
 
   /// Whether any error is switched on.
   [[nodiscard]] bool any() const;
