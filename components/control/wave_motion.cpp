@@ -52,8 +52,8 @@ void advance_wave(const MethodInput& input, double field, BodyState& body) {
   const ControlConfig& c = input.config;
   const double dt_s = input.dt_s;
   Wave& wave = body.wave;
-  // `field` is the argument of the wave: the coordinate along the head's direction, or the arc length. On a bent
-  // posture the two can differ by whole wavelengths. Therefore the wave fades out before its field changes.
+  // `field` chooses the argument of the wave (Wave::field): the coordinate along the head's direction, or the arc
+  // length. On a bent posture the two can differ by whole wavelengths. Therefore the wave fades out before it changes.
   const bool fades = wave.field != field && fields_differ(input.chain, body.shape_rad);
   const double amplitude_rad = fades ? 0.0 : input.gait.amplitude_rad;
   wave.amplitude_rad = approach(wave.amplitude_rad, amplitude_rad, c.amplitude_rate_rad_s * dt_s);

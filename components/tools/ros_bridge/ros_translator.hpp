@@ -60,8 +60,8 @@ class Translator {
   [[nodiscard]] Odometry odometry(const msg::RobotPose& pose, const msg::ImuState& imu);
   /// odom -> base_link by the estimate, and the chain of modules by the joint angles, at the pose's time.
   [[nodiscard]] TFMessage transforms(const msg::RobotPose& pose, const msg::JointState& joints);
-  /// The name of the logger is that of the component, or of the process. `period_ns`: the length of
-  /// a tick. The time of the line is its tick times this length; a line from before the first tick has the time 0.
+  /// The name of the logger is that of the component, or of the process. `period_ns`: the length of a tick.
+  /// The time of the line is its tick times this length; a line from before the first tick has the time 0.
   [[nodiscard]] Log log(const msg::LogLine& line, std::int64_t period_ns);
   /// base_link -> camera_optical; constant in a run.
   [[nodiscard]] TFMessage camera_transform(const msg::CameraInfo& info);

@@ -44,8 +44,8 @@ class HostLink {
     std::uintmax_t received = 0;  ///< [byte] of the log on the other host
   };
 
-  /// Begins to connect. `patience_s`: how long the host may be away before the run fails. `resume`: the
-  /// run continues an earlier one, whose files the host has kept. The host keeps them until end().
+  /// Begins to connect. `patience_s`: how long the host may be away before the run fails. `resume`: the run
+  /// continues an earlier one, whose files the host has kept. The host keeps them until end().
   HostLink(std::string name, HostPlan plan, std::string token, double patience_s, Print print, bool resume = false);
   ~HostLink();
   HostLink(const HostLink&) = delete;
