@@ -80,6 +80,12 @@ struct MethodInput {
   Perceived around{};
   JointArray rate_rad_s{};  ///< measured rates of the joints
   JointArray exerted_nm{};  ///< torques of the previous command, after the safety gate; 0 if it demanded none
+
+  /// The same input with another gait, for a method that varies the gait of another one. `varied` must outlive it.
+  [[nodiscard]] MethodInput with_gait(const Gait& varied) const {
+    return {robot,     chain,         config, desired, varied,     measured_rad,
+            torque_nm, commanded_rad, dt_s,   around,  rate_rad_s, exerted_nm};
+  }
 };
 
 struct MethodProgress {

@@ -47,11 +47,12 @@ std::optional<UBase> base_of(const MethodInput& input, const LinkArray& shape_ra
 void keep_residual(const MethodInput& input, BodyState& body);
 
 /// A method that takes the posture of the trajectory at a limited speed and rides the wave on it. The derived classes
-/// differ in when the motion is done.
+/// differ in when the motion is done. One that varies the wave overrides step() and calls that of this class with
+/// MethodInput::with_gait().
 class PostureMethod : public ControlMethod {
  public:
   void start(const MethodInput& input, BodyState& body) const final { keep_residual(input, body); }
-  MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const final;
+  MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const override;
 
  protected:
   /// `left_rad`: the largest angle between a joint and the desired posture.

@@ -79,6 +79,28 @@ TEST_F(MissingGroups, ARunNamesTheCommandsThatBuildItsPrograms) {
   expect_refused({"host", "guidance,servo_bus"}, refused, "servo_bus", "hardware");
 }
 
+// constrictor_host contains the components of the core, so that it can check their files; their programs are missing.
+TEST_F(MissingGroups, AProgramOfTheCoreThatWasNotBuiltIsFoundBeforeARunStarts) {
+  const auto command = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), (dir_ / "constrictor").string());
+    return Process(arguments, {{"XDG_RUNTIME_DIR", dir_.string()}});
+  };
+  const std::string report = (dir_ / "report").string();
+  for (const auto& arguments :
+       std::initializer_list<std::vector<std::string>>{{"check"}, {"run", "--report", report}}) {
+    Process refused = command(arguments);
+    EXPECT_EQ(refused.wait(30s), exit_status::kConfiguration) << refused.output() << refused.errors();
+    EXPECT_NE(refused.errors().find("process physics: found no program " + (dir_ / "physics").string()),
+              std::string::npos)
+        << refused.errors();
+  }
+  EXPECT_FALSE(fs::exists(report)) << "no run may be started";
+  fs::copy_file(program("physics"), dir_ / "physics");
+  Process next = command({"check"});
+  EXPECT_EQ(next.wait(30s), exit_status::kConfiguration);
+  EXPECT_EQ(next.errors().find("process physics"), std::string::npos) << next.errors();
+}
+
 TEST_F(MissingGroups, ASubcommandNamesTheCommandsThatBuildItsProgram) {
   const int missing = exit_status::kSoftware;
   expect_refused({"camera", "--help"}, missing, "camera_setup", "hardware");

@@ -85,6 +85,20 @@ void expect_clean(const HostOutput& output) {
   throw std::runtime_error("the check of the components failed: " + output.exit.describe() + ": " + errors);
 }
 
+/// Throws ConfigurationError if the program of a component that has a process of its own does not exist.
+/// constrictor_host contains every component, so that it can check one whose own program was not built.
+void require_own_programs(const LaunchPlan& plan) {
+  for (const auto& process : plan.manifest.processes) {
+    if (!process.program.empty() || !process.host.empty() || process.components.size() > 1) continue;
+    const std::string& component = process.components.front();
+    if (is_executable(program_folder() / component)) continue;
+    throw ConfigurationError(fmt::format(
+        "process {0}: found no program {1}. Build it, for example by the command cmake --build build/release --target "
+        "{0}, or host the component in one process with others (--group, --in-process)",
+        component, (program_folder() / component).string()));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> topics_of(const RunOptions& options, const LaunchPlan& plan, const ProcessPlan& process) {
@@ -135,6 +149,7 @@ std::vector<std::string> check_components(const RunOptions& options, const Launc
   arguments.insert(arguments.end(), configs.begin(), configs.end());
   const HostOutput output = run_program(std::move(arguments));
   expect_clean(output);
+  require_own_programs(plan);
   std::vector<std::string> warnings;
   for (const auto& line : output.lines)
     if (line.starts_with(kWarningMark)) warnings.push_back(line);

@@ -1,6 +1,7 @@
 // The groups of programs of the build (scripts/cmake/ProgramGroups.cmake), for programs that were not built.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -12,6 +13,9 @@ namespace constrictor::cli {
 /// The error message for a program that does not exist: its group, and the command that installs and builds the group;
 /// for a program of the core, and for one that is not of this project, what was found and what is accepted.
 [[nodiscard]] std::string missing_program(const std::string& program);
+
+/// Whether the file exists, is not a folder, and may be executed.
+[[nodiscard]] bool is_executable(const std::filesystem::path& file);
 
 /// Throws ConfigurationError if `program`, a name or a path, is not an executable file in program_folder(). The message
 /// begins with `where`, followed by missing_program().

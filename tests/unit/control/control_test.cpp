@@ -80,6 +80,44 @@ TEST(Control, PassesSensesToAnAddedMethod) {
     EXPECT_EQ(command.torque_limit_nm[j], 6.0) << "the robot's own limit applies to joint " << j;
 }
 
+/// An added method: undulation with half of the amplitude.
+class Gentle : public PostureMethod {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "gentle"; }
+  MethodProgress step(const MethodInput& input, BodyState& body, Setpoints& setpoints) const override {
+    Gait gait = input.gait;
+    gait.amplitude_rad *= 0.5;
+    return PostureMethod::step(input.with_gait(gait), body, setpoints);
+  }
+
+ protected:
+  MethodProgress progress(double, BodyState&) const override { return {}; }
+};
+
+// On a straight path the angles of the gait's equation (README.md) are proportional to its amplitude.
+TEST(Control, AnAddedMethodVariesTheGait) {
+  const auto command_of = [](const char* method) {
+    LocalRun run = make_run(
+        [method](const Tick&, msg::DesiredTrajectory& desired) {
+          set_motion(desired, method, 1);
+          desired.speed_m_s = 0.1;
+          return true;
+        },
+        make_control_factory({[]() -> std::unique_ptr<ControlMethod> { return std::make_unique<Gentle>(); }}));
+    run.advance(400);
+    EXPECT_STREQ(run.latest(topics::kMotionStatus)->method, method);
+    return *run.latest(topics::kJointCommand);
+  };
+  const msg::JointCommand whole = command_of("undulation");
+  const msg::JointCommand half = command_of("gentle");
+  double largest_rad = 0.0;
+  for (int j = 0; j < 23; ++j) {
+    EXPECT_NEAR(half.position_rad[j], 0.5 * whole.position_rad[j], 1e-9) << "joint " << j;
+    largest_rad = std::max(largest_rad, std::abs(whole.position_rad[j]));
+  }
+  EXPECT_GT(largest_rad, 0.2);
+}
+
 /// A file of the project as text.
 std::string text_of(const std::string& file) {
   std::ifstream stream(data_path(file));
