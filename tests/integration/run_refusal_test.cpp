@@ -17,6 +17,7 @@ TEST_F(RunCommand, RefusesWrongFilesAndArgumentsBeforeAnythingStarts) {
   write("unknown.yaml", replaced(kManifest, "[planner], program: toy_host", "[plannr]"));
   write("robot.yaml", "name: none\n");
   const auto file = [this](const char* name) { return (dir_ / name).string(); };
+  fs::create_symlink("circle.yaml", dir_ / "circle.yaml");  // a symbolic link to itself
   const std::vector<Case> cases = {
       {{"--manifest", file("typo.yaml")}, exit_status::kConfiguration, "typo.yaml:1"},
       {{"--manifest", file("missing.yaml")}, exit_status::kConfiguration, "no_such_program"},
@@ -28,6 +29,8 @@ TEST_F(RunCommand, RefusesWrongFilesAndArgumentsBeforeAnythingStarts) {
       {{"--config", "navigation=" + file("robot.yaml")},
        exit_status::kConfiguration,
        "navigation: " + file("robot.yaml")},
+      {{"--secure", file("no_keys")}, exit_status::kConfiguration, "--secure: found no folder " + file("no_keys")},
+      {{"--robot", file("circle.yaml")}, exit_status::kConfiguration, "robot: found '" + file("circle.yaml")},
       {{"--pace", "fast"}, exit_status::kUsage, "--pace: found 'fast'"},
       {{"--seed", "18446744073709551616"}, exit_status::kUsage, "found '18446744073709551616'"},
       {{"--max-sim-time", "nan"}, exit_status::kUsage, "found 'nan'"},

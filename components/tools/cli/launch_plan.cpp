@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <system_error>
 
 #include "cli/program_groups.hpp"
 #include "cli/recording/run_files.hpp"
@@ -27,8 +28,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// False also for a file that cannot be reached, for example because symbolic links form a loop.
+bool is_file(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error);
+}
+
 void require_file(const std::string& what, const fs::path& file) {
-  if (fs::is_regular_file(file)) return;
+  if (is_file(file)) return;
   throw ConfigurationError(fmt::format("{}: found no file {}, accepted a YAML file", what, file.string()));
 }
 
@@ -110,7 +117,7 @@ std::vector<std::string> names_of(const NamedFiles& files) {
 }
 
 fs::path find_file(const std::string& text, const NamedFiles& files) {
-  if (fs::is_regular_file(text)) return fs::absolute(text);
+  if (is_file(text)) return fs::absolute(text);
   const auto names = names_of(files);
   if (std::find(names.begin(), names.end(), text) != names.end()) return data_path(files.folder / (text + ".yaml"));
   throw ConfigurationError(fmt::format("{}: found '{}', accepted a file or one of {}{}", files.kind, text,
