@@ -5,6 +5,13 @@
 
 namespace constrictor {
 
+namespace {
+
+/// Below this rate the friction of a gear falls with the rate, so that a joint creeps instead of sticking.
+constexpr double kCreep_rad_s = 0.005;
+
+}  // namespace
+
 double ServoRow::torque_nm(double rate_rad_s) const {
   return std::clamp((velocity_rad_s - rate_rad_s) / softness, -torque_limit_nm, torque_limit_nm);
 }
@@ -26,7 +33,16 @@ double Servo::torque_limit_nm(double rate_rad_s, double driving) const {
   return limit;
 }
 
-double Servo::stretch_rad(double angle_rad) const { return motor_angle_rad_ - angle_rad - play_rad_; }
+double Servo::stretch_rad(double angle_rad) const {
+  const double apart_rad = motor_angle_rad_ - angle_rad;
+  if (play_rad_ == 0.0) return apart_rad;
+  const double beyond_rad = apart_rad - play_rad_;
+  return beyond_rad * play_rad_ > 0.0 ? beyond_rad : 0.0;
+}
+
+double Servo::spring_damping_nm_s_rad() const {
+  return std::max(model_.damping_nm_s_rad, step_s_ * model_.stiffness_nm_rad);
+}
 
 ServoRow Servo::row(double angle_rad, double rate_rad_s) {
   const double h = step_s_;
@@ -72,7 +88,9 @@ ServoRow Servo::position_row(double reference_rad, double reference_rate_rad_s, 
   // The spring kp acts from where the joint is at the beginning of the step. With at least half of h kp as damping that
   // is stable at each step, and the damping of usual servos is far above it; the spring at the end of the step would
   // add a damping of h kp that no servo has.
-  const double sum = inertia + std::max(kd, 0.5 * h * kp);
+  // Coulomb friction of the gear, as a damper that exerts it at the present rate: that never reverses the motion.
+  const double friction = model_.gear_friction_nm / std::max(std::abs(rate), kCreep_rad_s);
+  const double sum = inertia + std::max(kd, 0.5 * h * kp) + friction;
   const double wanted_rate = std::clamp(reference_rate_rad_s, -model_.max_speed_rad_s, model_.max_speed_rad_s);
   ServoRow row;
   row.softness = 1.0 / sum;
@@ -90,9 +108,8 @@ bool Servo::attach(ServoRow& row, double angle_rad, double rate_rad_s) {
   play_rad_ = std::copysign(0.5 * model_.backlash_rad, apart_rad);
   loose_ = std::abs(apart_rad) < std::abs(play_rad_);
   if (loose_) return false;
-  const double spring = h * model_.stiffness_nm_rad + model_.damping_nm_s_rad;
-  row.softness += 1.0 / spring;
-  row.velocity_rad_s += model_.stiffness_nm_rad * stretch_rad(angle_rad) / spring;
+  row.softness += 1.0 / spring_damping_nm_s_rad();
+  row.velocity_rad_s += model_.stiffness_nm_rad * stretch_rad(angle_rad) / spring_damping_nm_s_rad();
   return true;
 }
 
@@ -135,9 +152,8 @@ ServoRow Servo::torque_row(double angle_rad, double rate_rad_s) {
 void Servo::advance(const ServoRow& row, double angle_before_rad, double rate_rad_s) {
   if (!elastic()) return;
   // The law of the spring gives the rate of the motor, also while the torque is at its limit.
-  const double spring = step_s_ * model_.stiffness_nm_rad + model_.damping_nm_s_rad;
-  const double stretched = model_.stiffness_nm_rad * stretch_rad(angle_before_rad);
-  motor_rate_rad_s_ = loose_ ? loose_motor_rad_s_ : rate_rad_s + (row.torque_nm(rate_rad_s) - stretched) / spring;
+  const double damping_torque_nm = row.torque_nm(rate_rad_s) - model_.stiffness_nm_rad * stretch_rad(angle_before_rad);
+  motor_rate_rad_s_ = loose_ ? loose_motor_rad_s_ : rate_rad_s + damping_torque_nm / spring_damping_nm_s_rad();
   motor_angle_rad_ += step_s_ * motor_rate_rad_s_;
 }
 

@@ -66,8 +66,12 @@ class Servo {
   /// Puts the spring, if there is one, between the motor and the joint. `row` is that of the motor. False: the gear is
   /// loose in this step.
   bool attach(ServoRow& row, double angle_rad, double rate_rad_s);
-  /// Stretch of the elastic element on the side of the backlash on which the gear will touch at the end of the step.
+  /// Stretch of the elastic element at the beginning of the step, on the side of the backlash on which the gear will
+  /// touch at its end; 0 while the gear does not touch there yet.
   [[nodiscard]] double stretch_rad(double angle_rad) const;
+  /// Damping of the elastic element. As in position_row, its spring acts from where it is at the beginning of the step,
+  /// which adds no damping; it is stable with at least h k of it, and then a spring without masses does not overshoot.
+  [[nodiscard]] double spring_damping_nm_s_rad() const;
 
   JointModel model_;
   JointSetpoint from_;  ///< where the curve of this tick begins; a joint begins at rest at the angle 0

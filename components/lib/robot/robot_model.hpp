@@ -23,7 +23,7 @@ struct JointModel {
   double position_gain_nm_rad = 300.0;  ///< torque for an error of the angle
   double velocity_gain_nm_s_rad = 4.0;  ///< torque for an error of the rate
   double rotor_inertia_kg_m2 = 0.01;    ///< of motor and gear
-  double gear_friction_nm = 0.0;        ///< resists the motion of a relaxed joint
+  double gear_friction_nm = 0.0;        ///< resists the motion of the joint
   double no_load_speed_rad_s = 0.0;     ///< at which the motor has no torque left; 0: the torque does not fall
   double stiffness_nm_rad = 0.0;        ///< stiffness of the series elastic element; 0: the joint has none and is rigid
   double damping_nm_s_rad = 0.0;        ///< damping of the series elastic element

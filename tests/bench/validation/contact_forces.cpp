@@ -103,7 +103,7 @@ Section check_gait_energy() {
     section.cases.push_back({fmt::format("work of the motors minus growth of the kinetic energy; friction {} along, "
                                          "period {} s",
                                          along, period_s),
-                             "J", found.friction_j, found.work_j - found.kinetic_change_j, 0.02});
+                             "J", found.friction_j, found.work_j - found.kinetic_change_j, 0.01});
     table.rows.push_back({fmt::format("{} / {}", along, robot.friction_across), shown(period_s), shown(found.speed_m_s),
                           shown(found.work_j / found.duration_s), shown(found.friction_j / found.duration_s),
                           shown(found.work_j / (24 * robot.module_mass_kg * kG * found.speed_m_s * found.duration_s))});

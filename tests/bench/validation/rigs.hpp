@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "sim/world/world.hpp"
@@ -16,6 +17,9 @@ namespace constrictor::validation {
 /// Pitch joints: the box is a table, and the robot lies on it. Yaw joints: gravity points to the right, and the robot
 /// lies with its right side on a wall, high above the ground. The robot starts at rest.
 [[nodiscard]] Scenario beyond_an_edge(const RobotModel& robot, JointAxis axis, std::size_t overhang);
+
+/// The robot of this name (components/lib/robot/NAME.yaml).
+[[nodiscard]] inline RobotModel robot_file(const std::string& name) { return load_robot(testing::robot_path(name)); }
 
 /// A head that swings.
 struct Swing {

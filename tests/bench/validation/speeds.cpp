@@ -3,7 +3,7 @@
 
 #include "bench/validation/checks.hpp"
 #include "bench/validation/gait_run.hpp"
-#include "support/project.hpp"
+#include "bench/validation/rigs.hpp"
 
 namespace constrictor::validation {
 namespace {
@@ -13,8 +13,6 @@ struct Variant {
   RobotModel robot;
   OpenLoopGait gait;
 };
-
-RobotModel robot_file(const std::string& name) { return load_robot(testing::robot_path(name)); }
 
 RobotModel with_friction(double along, double across) {
   RobotModel robot = mamba();
@@ -72,7 +70,7 @@ Section check_speeds() {
                           shown(found.torque_rms_nm), shown(found.tracking_rad)});
     if (variant.name == "mamba_mx106 at 0.3 Hz")
       section.cases.push_back(
-          {"mamba_mx106 at 0.3 Hz: between 0.05 and 0.25 m/s", "m/s", 0.15, found.speed_m_s, 0.1, false, false});
+          {"mamba_mx106 at 0.3 Hz: between 0.05 and 0.25 m/s", "m/s", 0.15, found.speed_m_s, 0.1, false});
   }
   section.tables.push_back(table);
   return section;

@@ -31,9 +31,10 @@ TEST_P(Contact, GroundForcesStayWithinTheAnisotropicFrictionAndReachIt) {
       across = std::max(across, std::abs(contact.force_n.y()) / contact.force_n.z());
     }
   }
-  // Modules hardly roll or pitch, so their axes are the axes of the friction.
-  EXPECT_NEAR(along, world.robot().friction_along, 0.02);
-  EXPECT_NEAR(across, world.robot().friction_across, 0.05);
+  // Modules hardly roll or pitch, so their axes are the axes of the friction. The forces of a tick are summed in frames
+  // that turn during the tick: a hundredth of the friction across appears along the module.
+  EXPECT_NEAR(along, world.robot().friction_along, 0.0035);
+  EXPECT_NEAR(across, world.robot().friction_across, 0.03 * world.robot().friction_across);
   EXPECT_NEAR(weight, 24 * 0.3 * kG, 0.03 * 24 * 0.3 * kG);
 }
 
@@ -79,7 +80,7 @@ TEST_P(Contact, SelfContactIsFeltByBothModulesEqually) {
     }
     if (largest < 0.5) continue;
     seen = true;
-    EXPECT_LT(sum.norm(), 0.1 * largest);
+    EXPECT_LT(sum.norm(), 0.03 * largest);
   }
   EXPECT_TRUE(seen);
 }

@@ -1,4 +1,4 @@
-// The open-loop gait reaches the speeds and radii of the preceding study.
+// The open-loop gait reaches the speeds and radii of the preceding study, and those of a short step.
 #include <gtest/gtest.h>
 
 #include "unit/world/world_fixture.hpp"
@@ -50,8 +50,24 @@ Course run(const OpenLoopGait& gait, const SolverSettings& settings) {
   return {moved.x() / measured_s, yaw / measured_s, moved.y(), path_m / std::abs(yaw)};
 }
 
+/// The course with a step of 0.5 ms.
+Course fine_course(const OpenLoopGait& gait) {
+  SolverSettings fine;
+  fine.engine = kEngineChain;
+  fine.step_s = 0.0005;
+  return run(gait, fine);
+}
+
+OpenLoopGait curved(double curvature_1_m) {
+  OpenLoopGait gait;
+  gait.curvature_1_m = curvature_1_m;
+  return gait;
+}
+
 TEST_P(GaitOfTheStudy, DrivesStraightAtTheStudysSpeed) {
   const Course course = run({}, settings());
+  const double converged_m_s = fine_course({}).speed_m_s;
+  EXPECT_NEAR(course.speed_m_s, converged_m_s, 0.03 * converged_m_s);
   EXPECT_GT(course.speed_m_s, 0.6);
   EXPECT_LT(course.speed_m_s, 0.95);
   EXPECT_NEAR(course.drift_m, 0.0, 0.3);
@@ -60,23 +76,38 @@ TEST_P(GaitOfTheStudy, DrivesStraightAtTheStudysSpeed) {
 TEST_P(GaitOfTheStudy, DrivesBackwardsAtTheStudysSpeed) {
   OpenLoopGait gait;
   gait.frequency_hz = -0.7;
-  EXPECT_NEAR(run(gait, settings()).speed_m_s, -0.63, 0.1);
+  const double speed_m_s = run(gait, settings()).speed_m_s;
+  EXPECT_NEAR(speed_m_s, -0.63, 0.03 * 0.63);
+  EXPECT_NEAR(speed_m_s, fine_course(gait).speed_m_s, 0.03 * 0.63);
 }
 
 TEST_P(GaitOfTheStudy, TurnsWithTheStudysRadius) {
-  OpenLoopGait gait;
-  gait.curvature_1_m = 0.8;
-  const Course course = run(gait, settings());
+  const Course course = run(curved(0.8), settings());
+  const Course converged = fine_course(curved(0.8));
+  EXPECT_NEAR(course.turn_rad_s, converged.turn_rad_s, 0.03 * converged.turn_rad_s);
+  EXPECT_NEAR(course.radius_m, converged.radius_m, 0.03 * converged.radius_m);
   EXPECT_GT(course.turn_rad_s, 0.3);
-  EXPECT_NEAR(course.radius_m, 1.1, 0.2);
+  EXPECT_NEAR(course.radius_m, 1.1, 0.1);
 }
 
 TEST_P(GaitOfTheStudy, RotatesAlmostOnTheSpotWithStrongCurvature) {
-  OpenLoopGait gait;
-  gait.curvature_1_m = -2.2;
-  const Course course = run(gait, settings());
+  const Course course = run(curved(-2.2), settings());
+  const Course converged = fine_course(curved(-2.2));
+  EXPECT_NEAR(course.turn_rad_s, converged.turn_rad_s, -0.03 * converged.turn_rad_s);
+  EXPECT_NEAR(course.radius_m, converged.radius_m, 0.03 * converged.radius_m);
   EXPECT_LT(course.turn_rad_s, -66 * std::numbers::pi / 180);
   EXPECT_LT(course.radius_m, 0.3);
+}
+
+// A curve to the left is the mirror image of the curve to the right, half an undulation later.
+TEST_P(GaitOfTheStudy, CurvesToBothSidesAlike) {
+  for (const double curvature_1_m : {0.8, 2.2}) {
+    const Course left = run(curved(curvature_1_m), settings());
+    const Course right = run(curved(-curvature_1_m), settings());
+    EXPECT_GT(left.turn_rad_s, 0.0);
+    EXPECT_NEAR(right.turn_rad_s, -left.turn_rad_s, 0.02 * left.turn_rad_s) << curvature_1_m;
+    EXPECT_NEAR(right.radius_m, left.radius_m, 0.02 * left.radius_m) << curvature_1_m;
+  }
 }
 
 /// How well the servos of the yaw joints do their work in a steady gait.

@@ -8,8 +8,8 @@
 
 namespace constrictor {
 
-inline constexpr double kStep_s = 0.002;
-inline constexpr int kSteps = 10;
+inline constexpr double kStep_s = 0.005;  // the production step (SolverSettings)
+inline constexpr int kSteps = 4;
 inline constexpr double kTick_s = kSteps * kStep_s;
 
 /// A body that turns about one fixed axis, moved by a servo.

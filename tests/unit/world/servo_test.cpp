@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "unit/world/servo_joint.hpp"
@@ -116,12 +117,62 @@ TEST(Servo, ARelaxedJointIsStoppedByTheFrictionOfItsGear) {
   EXPECT_NEAR(joint.angle_rad, 0.5 * 1.0 * 0.02 / 0.1, 0.01);
 }
 
+TEST(Servo, TheFrictionOfTheGearBrakesADrivenJoint) {
+  JointModel rough = model();
+  rough.gear_friction_nm = 0.4;
+  Joint joint(rough, 0.02);
+  // At a steady rate the position loop exerts what the friction takes: the joint lags by the friction over the gain.
+  for (int i = 1; i <= 100; ++i) joint.tick({i * kTick_s * 0.5, 0.5, 6.0});
+  EXPECT_NEAR(joint.rate_rad_s, 0.5, 1e-6);
+  EXPECT_NEAR(joint.servo.setpoint_rad() - joint.angle_rad, 0.4 / rough.position_gain_nm_rad,
+              0.02 * 0.4 / rough.position_gain_nm_rad + 0.5 * kStep_s);
+  EXPECT_NEAR(joint.torque_nm, 0.0, 1e-6) << "the gear takes all of the motor's torque";
+  // A weak push against a servo that holds creeps, and a relaxed joint feels the same friction.
+  Joint held(rough, 0.02);
+  held.load_nm = 0.3;
+  held.tick({0.0, 0.0, 6.0});
+  EXPECT_LT(std::abs(held.angle_rad), 0.005 * kTick_s);
+}
+
 TEST(Servo, ASeriesSpringStretchesByTheLoadAndTheMotorStaysAtTheSetpoint) {
   Joint joint(elastic_model());
   joint.load_nm = 3.0;
   for (int i = 0; i < 200; ++i) joint.tick({0.2, 0.0, 6.0});
   EXPECT_NEAR(joint.servo.motor_angle_rad(), 0.2 + 3.0 / model().position_gain_nm_rad, 1e-6);
   EXPECT_NEAR(joint.angle_rad - joint.servo.motor_angle_rad(), 3.0 / 60.0, 1e-6);
+}
+
+// The motor holds its angle, and the joint swings on its spring: I q" = -k q - d q'. A stiff servo hardly moves.
+TEST(Servo, AJointOnItsSpringSwingsAndDecaysAsTheEquationSays) {
+  for (const double inertia : {0.02, 0.1}) {
+    JointModel held = elastic_model();
+    held.position_gain_nm_rad = 1e5;
+    held.velocity_gain_nm_s_rad = 1e3;
+    Joint joint(held, inertia);
+    joint.angle_rad = 0.02;
+    std::vector<double> crossings_s;
+    std::vector<double> peaks_rad;
+    double peak_rad = 0.0;
+    for (int i = 0; crossings_s.size() < 4; ++i) {
+      ASSERT_LT(i, 1000);
+      if (i % kSteps == 0) {
+        joint.servo.set({0.0, 0.0, 6.0});
+        joint.servo.begin_tick(kSteps, kStep_s);
+      }
+      const double before = joint.angle_rad;
+      joint.step();
+      peak_rad = std::max(peak_rad, std::abs(joint.angle_rad));
+      if (before * joint.angle_rad >= 0.0) continue;
+      crossings_s.push_back(kStep_s * (i + before / (before - joint.angle_rad)));
+      peaks_rad.push_back(std::exchange(peak_rad, 0.0));
+    }
+    const double decay = 0.5 * 0.5 / inertia;  // d / 2I
+    const double w = std::sqrt(60.0 / inertia - decay * decay);
+    const double half_s = (crossings_s[3] - crossings_s[1]) / 2.0;
+    EXPECT_NEAR(std::numbers::pi / half_s, w, 0.03 * w) << inertia;
+    // The first peak is the angle of the start; the others are those between two crossings, half a period apart.
+    EXPECT_NEAR(std::log(peaks_rad[1] / peaks_rad[3]), decay * 2.0 * std::numbers::pi / w, 0.05) << inertia;
+  }
 }
 
 TEST(Servo, ASpringNeverTransmitsMoreThanTheTorqueLimit) {

@@ -105,9 +105,10 @@ std::string problems_of_keys(const fs::path& folder, const LaunchManifest& manif
 void use_keys(const fs::path& folder, const LaunchPlan& plan) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
-    throw ConfigurationError(fmt::format("--secure: found no folder {0}; `constrictor keys {0}` with the same manifest "
-                                         "and groups makes it",
-                                         folder.string()));
+    throw ConfigurationError(
+        fmt::format("--secure: found no folder {0}; `constrictor keys {0}` with the same manifest "
+                    "and groups makes it",
+                    folder.string()));
   const std::string problems = problems_of_keys(folder, plan.manifest);
   if (problems.empty()) {
     ::setenv("CONSTRICTOR_SECURITY", fs::absolute(folder).c_str(), 1);
