@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 
+#include "control/wave_motion.hpp"
 #include "robot/trajectory_path.hpp"
 #include "unit/control/control_run.hpp"
 
