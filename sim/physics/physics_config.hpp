@@ -40,7 +40,11 @@ struct PhysicsConfig : PlantParameters {
           "Greatest velocity at which bodies that overlap leave each other"),
       add(solver.one_ground_contact_a_joint, "solver.one_ground_contact_a_joint",
           SolverSettings{}.one_ground_contact_a_joint,
-          "true: at a joint only the module behind it touches the ground, to save CPU time (see README.md)")};
+          "true: at a joint only the module behind it touches the ground, to save CPU time (see README.md)"),
+      add(solver.elliptic_friction, "solver.elliptic_friction", SolverSettings{}.elliptic_friction,
+          "chain: true: an ellipse bounds the skin's friction along and across, as of scales; false: a rectangle, as "
+          "of "
+          "wheels")};
   GateLimits command = add_gate_limits(command);
   std::vector<double> stop_at_ticks =
       add(stop_at_ticks, "stop_at_ticks", {}, "ticks", {1, 1e9}, {0, 64},
@@ -53,7 +57,8 @@ struct PhysicsConfig : PlantParameters {
   [[nodiscard]] std::vector<std::int64_t> stop_ticks() const { return {stop_at_ticks.begin(), stop_at_ticks.end()}; }
 
   /// Checks that a tick is a whole number of solver steps; otherwise the world's time would drift from that of the
-  /// ticks. Also checks that stop_at_ticks are whole numbers in rising order. Throws ConfigurationError.
+  /// ticks. Also checks that stop_at_ticks are whole numbers in rising order, and that the engine has the law of
+  /// friction. Throws ConfigurationError.
   void complete(const Configuration& root) const {
     for (std::size_t i = 0; i < stop_at_ticks.size(); ++i) {
       if (stop_at_ticks[i] != std::floor(stop_at_ticks[i]) || (i > 0 && stop_at_ticks[i] <= stop_at_ticks[i - 1]))
@@ -61,6 +66,9 @@ struct PhysicsConfig : PlantParameters {
                          "found numbers that are not whole, or not in rising order, accepted whole ticks in rising "
                          "order");
     }
+    if (solver.elliptic_friction && solver.engine == kEngineOde)
+      throw root.error("solver.elliptic_friction",
+                       "found true with the engine ode, accepted only with chain: ode bounds friction by a rectangle");
     const double steps = control_period_s / solver.step_s;
     if (steps >= 0.5 && std::abs(steps - std::round(steps)) <= 1e-6) return;
     throw root.error("period_s", "found a period that is no multiple of solver.step_s, accepted a multiple");

@@ -28,7 +28,10 @@ struct ContactSlope {
 ///   normal:    f = max(0, k depth - d v), a spring and a damper in parallel; the depth is that at the beginning of the
 ///              step, the velocity that at its end. With the depth at the end, too, the step h would add a damping h k
 ///   friction:  Coulomb's law with the coefficients of the contact; a force within its bound lets the bodies creep with
-///              velocity = force / creep_resistance, so slowly that no result depends on it
+///              velocity = force / creep_resistance, so slowly that no result depends on it. The bound on the friction
+///              of skin, with coefficients a along and b across, is a rectangle, or with elliptic_friction an ellipse:
+///              the force of a sliding body is then the one that takes the most power, -N D D v / |D v| with D =
+///              diag(a, b)
 /// The bounds of friction belong to one normal force, which bound() sets; between two calls the law is the gradient of
 /// a convex function.
 class ContactLaw {
@@ -44,6 +47,7 @@ class ContactLaw {
 
  private:
   [[nodiscard]] double normal_n(double velocity_m_s) const;
+  [[nodiscard]] Eigen::Vector2d scaled_creep(const Eigen::Vector3d& velocity_m_s) const;
 
   Eigen::Matrix3d frame_;
   double resting_n_;  ///< normal force of bodies that do not move
@@ -51,6 +55,7 @@ class ContactLaw {
   double fastest_m_s_;  ///< at which bodies may leave each other because they overlap
   double creep_resistance_n_s_m_;
   bool isotropic_;
+  bool elliptic_;
   double along_;  ///< coefficients of friction
   double across_;
   double along_n_ = 0.0;  ///< bounds of friction

@@ -26,6 +26,7 @@ struct SolverSettings {
   /// the joint touches the ground there; a module then turns without friction, and odometry is less exact. The README
   /// of sim/physics says how much CPU time that saves.
   bool one_ground_contact_a_joint = false;
+  bool elliptic_friction = false;  ///< chain: an ellipse bounds the friction of the skin; otherwise a rectangle does
   std::uint32_t reorder_seed = 1;  ///< ode: seed of QuickStep's random order of constraints
 };
 

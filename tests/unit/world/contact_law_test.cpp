@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace constrictor {
 namespace {
@@ -80,6 +81,35 @@ TEST(ContactLaw, SlidingFrictionOpposesTheVelocityWithinItsBound) {
   }
 }
 
+// Coulomb's law with an ellipse: of all forces within the bound, the one of a sliding body takes the most power.
+TEST(ContactLaw, SlidingSkinWithAnEllipseTakesTheMostPower) {
+  SolverSettings settings;
+  settings.elliptic_friction = true;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> speed(-0.5, 0.5);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d v(-0.01, speed(random), speed(random));
+    ContactLaw law(contact_at(0.0012, skin()), settings);
+    law.bound(v);
+    const Vector3d force = law.force_n(v);
+    EXPECT_NEAR(std::hypot(force[1] / 0.05, force[2] / 0.5), force[0], 1e-9) << "on the ellipse";
+    for (double angle = 0.0; angle < 6.28; angle += 0.01) {
+      const Vector3d other(0.0, 0.05 * force[0] * std::cos(angle), 0.5 * force[0] * std::sin(angle));
+      EXPECT_GE(-force.tail<2>().dot(v.tail<2>()), -other.tail<2>().dot(v.tail<2>()) - 1e-9);
+    }
+  }
+  // With equal coefficients the ellipse is the circle of isotropic friction.
+  ContactLaw circle(contact_at(0.0012, {0.4, 0.4, false, Vector3d::UnitX()}), settings);
+  ContactLaw equal(contact_at(0.0012, Friction::equal(0.4)), settings);
+  for (const Vector3d& v : {Vector3d(0.0, 1e-6, 2e-6), Vector3d(0.0, 0.1, -0.2)}) {
+    circle.bound(v);
+    equal.bound(v);
+    EXPECT_NEAR(circle.force_n(v).norm(), equal.force_n(v).norm(), 1e-9);
+    EXPECT_NEAR((circle.frame() * circle.force_n(v)).dot(circle.frame() * v),
+                (equal.frame() * equal.force_n(v)).dot(equal.frame() * v), 1e-9);
+  }
+}
+
 TEST(ContactLaw, TheFirstTangentOfSkinIsTheDirectionAlongTheModule) {
   const ContactLaw law(contact_at(0.0012, skin()), {});
   EXPECT_LT((law.frame().col(1) - skin().direction).norm(), 1e-12);
@@ -90,11 +120,14 @@ TEST(ContactLaw, TheSlopeIsTheDerivativeOfTheForce) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> exponent(-7.0, 0.0);
   std::uniform_real_distribution<double> direction(-1.0, 1.0);
-  for (const Friction& friction : {Friction::equal(0.4), skin()}) {
+  SolverSettings elliptic;
+  elliptic.elliptic_friction = true;
+  for (const auto& [friction, settings] :
+       {std::pair(Friction::equal(0.4), SolverSettings{}), {skin(), SolverSettings{}}, {skin(), elliptic}}) {
     for (int i = 0; i < 500; ++i) {
       const Vector3d v =
           std::pow(10.0, exponent(random)) * Vector3d(direction(random), direction(random), direction(random));
-      ContactLaw law(contact_at(0.0012, friction), {});
+      ContactLaw law(contact_at(0.0012, friction), settings);
       law.bound(v);
       const Matrix3d slope = matrix_of(law.slope(v));
       Matrix3d found;
