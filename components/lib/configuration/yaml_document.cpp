@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <vector>
 
 namespace constrictor {
 namespace {
@@ -27,11 +28,23 @@ void visit(const YAML::Node& node, int level, std::size_t& values) {
   }
 }
 
+constexpr const char* kNotClosed = "a list or map that is not closed";
+
+/// All documents of the text. What yaml-cpp calls "end of sequence flow not found" gets a name that people understand.
+std::vector<YAML::Node> load_all(const std::string& text) {
+  try {
+    return YAML::LoadAll(text);
+  } catch (const YAML::ParserException& error) {
+    if (!error.msg.ends_with("flow not found")) throw;
+    throw YAML::ParserException(error.mark, kNotClosed);
+  }
+}
+
 }  // namespace
 
 YAML::Node parse_yaml(const std::string& text) {
   YAML::Node found;
-  for (const YAML::Node& document : YAML::LoadAll(text)) {
+  for (const YAML::Node& document : load_all(text)) {
     if (document.IsNull()) continue;  // such as the nothing after a last line of "---"
     if (!found.IsNull()) throw YAML::ParserException(document.Mark(), "a second document; only one is read");
     found.reset(document);
@@ -42,6 +55,7 @@ YAML::Node parse_yaml(const std::string& text) {
 }
 
 std::string accepted_yaml(const YAML::Exception& error) {
+  if (error.msg == kNotClosed) return "valid YAML (is a ']', '}' or comma missing?)";
   return error.msg.find("flow") == std::string::npos ? "valid YAML" : "valid YAML (is a comma missing?)";
 }
 

@@ -12,7 +12,7 @@ namespace constrictor {
 /// function that visits all values would go round for ever.
 [[nodiscard]] YAML::Node parse_yaml(const std::string& text);
 
-/// "valid YAML", with a hint if brackets are not closed: "end of map flow not found" tells nobody what to look for.
+/// "valid YAML", with a hint what may be missing if it is about lists or maps in brackets.
 [[nodiscard]] std::string accepted_yaml(const YAML::Exception& error);
 
 }  // namespace constrictor

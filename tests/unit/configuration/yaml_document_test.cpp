@@ -33,6 +33,11 @@ TEST(YamlDocument, ASecondDocumentIsRefused) {
   EXPECT_NE(refusal("a: 1\n...\ngarbage: [\n"), "accepted");
 }
 
+TEST(YamlDocument, AListOrMapThatIsNotClosedIsCalledSo) {
+  EXPECT_EQ(refusal("a: 1\nline: ["), "2: a list or map that is not closed");
+  EXPECT_EQ(refusal("a: {b: 1"), "1: a list or map that is not closed");
+}
+
 TEST(YamlDocument, AnAliasToAValueThatContainsItIsRefused) {
   for (const char* text : {"a: &x {b: *x}", "a: &x [1, *x]", "- &x {k: [{l: *x}]}"})
     EXPECT_NE(refusal(text).find("an alias to a value that contains it"), std::string::npos) << text;
