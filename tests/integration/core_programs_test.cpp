@@ -42,6 +42,15 @@ TEST(CorePrograms, TheScriptsAcceptEachGroup) {
   }
 }
 
+TEST(CorePrograms, TheHelpOfAScriptInstallsAndBuildsNothing) {
+  for (const char* script : {"scripts/run.sh", ".ci/run"}) {
+    Process help({source_path(script).string(), "--help"});
+    EXPECT_EQ(help.wait(10s), exit_status::kOk) << script;
+    EXPECT_NE(help.output().find(std::string("\nUsage: ") + script + " ["), std::string::npos) << help.output();
+    EXPECT_EQ(help.output().find("build: "), std::string::npos) << help.output();
+  }
+}
+
 /// A folder that contains only the programs of the core that the command itself needs.
 class MissingGroups : public ::testing::Test {
  protected:
