@@ -98,7 +98,7 @@ install(CODE "
 
 # Libraries to build against, as Constrictor::messages and so on.
 set(PUBLIC_LIBRARIES options messages log component barrier device_faults faults cyclone recording client runtime
-    configuration robot dynamixel serial plant scheduling)
+    configuration command_line robot dynamixel serial plant scheduling)
 foreach(library IN LISTS PUBLIC_LIBRARIES)
   set_target_properties(constrictor_${library} PROPERTIES EXPORT_NAME ${library})
   install(TARGETS constrictor_${library} EXPORT ConstrictorTargets

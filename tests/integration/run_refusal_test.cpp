@@ -47,6 +47,13 @@ TEST_F(RunCommand, RefusesWrongFilesAndArgumentsBeforeAnythingStarts) {
   }
 }
 
+TEST_F(RunCommand, AWrongOptionOfAHostedComponentIsExplained) {
+  Process refused = command({"host", "navigation", "--domian", "3"});
+  EXPECT_EQ(refused.wait(30s), exit_status::kUsage);
+  EXPECT_EQ(refused.errors(),
+            "navigation: no option '--domian', did you mean '--domain'? (see constrictor_host navigation --help)\n");
+}
+
 // The value of a shell's variable that is not set.
 TEST_F(RunCommand, EveryCommandRefusesAnEmptyArgument) {
   const std::vector<std::vector<std::string>> commands = {

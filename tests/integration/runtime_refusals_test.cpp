@@ -24,6 +24,23 @@ TEST(RuntimeRefusals, ASecondMemberOfOneNameIsRefusedAndTheRunGoesOn) {
   EXPECT_EQ(run.result(), expected);
 }
 
+TEST(RuntimeRefusals, AWrongCommandLineIsExplained) {
+  const auto refusal = [](std::vector<std::string> words) {
+    words.insert(words.begin(), {program("toy_host"), "navigation"});
+    Process process(std::move(words));
+    EXPECT_EQ(process.wait(20s), exit_status::kUsage) << process.errors();
+    return process.errors();
+  };
+  const std::string help = " (see navigation --help)\n";
+  EXPECT_EQ(refusal({"--domian", "3"}), "navigation: no option '--domian', did you mean '--domain'?" + help);
+  EXPECT_EQ(refusal({"--domain", "230"}),
+            "navigation: --domain: found '230', accepted a whole number from 0 to 229" + help);
+  EXPECT_EQ(refusal({"--images", "ofF"}),
+            "navigation: --images: found 'ofF', accepted on, off, recompute, did you mean 'off'?" + help);
+  EXPECT_EQ(refusal({"--patience", "-1"}),
+            "navigation: --patience: found '-1', accepted a number from 0 to 86400 s" + help);
+}
+
 TEST(RuntimeRefusals, AMissingMemberIsNamedAndTheOthersGiveUp) {
   ToyRun run(100, {"--patience", "4"});
   run.start_all({"physics", "navigation", "control", "report"});

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "component/data_path.hpp"
+#include "configuration/command_line.hpp"
 #include "configuration/configuration.hpp"
 #include "cyclone/entity.hpp"
 #include "cyclone/run_token.hpp"
@@ -58,9 +59,15 @@ std::pair<std::string, std::uint16_t> parse_latency(const std::string& text, con
 
 void add_recording_options(CLI::App& app, RecordingOptions& options) {
   app.add_flag("--record", options.record, "plant only: record all topics in the file run.mcap in --output");
-  app.add_option("--images", options.images, "plant only: what --record records of images: on, off, recompute")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, RecordedImages>{
-          {"on", RecordedImages::kOn}, {"off", RecordedImages::kOff}, {"recompute", RecordedImages::kRecompute}}));
+  app.add_option_function<std::string>(
+         "--images",
+         [&options](const std::string& word) {
+           options.images = word == "on"    ? RecordedImages::kOn
+                            : word == "off" ? RecordedImages::kOff
+                                            : RecordedImages::kRecompute;
+         },
+         "plant only: what --record records of images")
+      ->check(one_of({"on", "off", "recompute"}));
   app.add_option_function<std::vector<std::string>>(
       "--attach",
       [&options](const std::vector<std::string>& texts) {
@@ -78,7 +85,7 @@ void add_scheduling_options(CLI::App& app, Scheduling& scheduling) {
   app.add_option("--priority", scheduling.priority,
                  "1 to 99: ask for the real-time scheduler (SCHED_FIFO) with this priority; 0: the usual scheduler")
       ->capture_default_str()
-      ->check(CLI::Range(0, 99));
+      ->check(whole_number(0, 99));
   app.add_flag("--lock-memory", scheduling.lock_memory, "keep the memory of this process from being paged out");
   app.add_option_function<std::string>(
       "--cpus",
@@ -124,7 +131,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
   app.set_version_flag("--version", [&names] { return version_text(names, own_git_revision()); });
   app.add_option("--domain", options.domain, "DDS domain of the run")
       ->envname("CONSTRICTOR_DOMAIN")
-      ->check(CLI::Range(0, 229));
+      ->check(whole_number(0, 229));
   app.add_option("--roster", options.roster, "every member of the run, comma separated (default: " + names + ")")
       ->delimiter(',');
   app.add_option("--plant", options.plant, "the member that is the plant");
@@ -134,7 +141,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
   app.add_option(
       "--mission", options.setup.mission,
       "mission (YAML), for example '{sequence: [green, red], line_colour: blue, known: {zone_radius_m: 0.4}}'");
-  app.add_option("--seed", options.setup.seed, "seed of the run");
+  app.add_option("--seed", options.setup.seed, "seed of the run")->check(whole_number());
   app.add_option("--output", options.setup.output_dir, "folder for the files that this process writes");
   app.add_option("--config", config_files,
                  "NAME=FILE: configuration file of a component, instead of its default; may be repeated");
@@ -145,12 +152,13 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
                  "file of faults (YAML) to inject into the run; equal in all processes of the run");
   app.add_option("--incarnation", options.incarnation,
                  "1 at the first start of the process in the run, and one more at each restart")
-      ->check(CLI::Range(1u, 1'000'000u));
+      ->check(whole_number(1, 1'000'000));
   app.add_flag("--replace", options.replace,
                "take the place of components with another configuration or of another program, and begin anew; in runs "
                "at real-time pace only");
   app.add_option("--run-id", options.run_id,
-                 "number of the run that this process belongs to; 0: the first run that begins in the domain");
+                 "number of the run that this process belongs to; 0: the first run that begins in the domain")
+      ->check(whole_number());
   app.add_option("--token-file", token_file,
                  "file with the run's token, readable by its owner only; without it any process in the domain may "
                  "command the run")
@@ -164,10 +172,10 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
   app.add_flag("--realtime", options.realtime, "plant only: ticks follow the wall clock and wait for no member");
   app.add_option("--max-sim-time", options.max_sim_time_s,
                  "[s] simulated time at which the plant ends the run; 0: never")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number(0.0, 1e6, "s"));
   app.add_option("--patience", options.patience_s,
                  "[s] wall time to wait for another process before this one gives up; 0: for ever")
-      ->check(CLI::Range(0.0, 86400.0));
+      ->check(number(0.0, 86400.0, "s"));
   bool check = false;
   app.add_flag("--check", check, "read all files, print what is wrong with them, and exit; joins no run");
   bool topics = false;
@@ -177,11 +185,7 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
   bool no_checkpoints = false;
   app.add_flag("--no-checkpoints", no_checkpoints,
                "plant only: keep no checkpoints in --output; the process can then not be restarted");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_status::kOk : exit_status::kUsage;
-  }
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
 
   try {
     for (const auto& text : config_files) {

@@ -347,7 +347,7 @@ void add_param(CLI::App& app, Action& action) {
   for (auto* sub : {set_app, load_app}) {
     sub->add_option("--at-tick", options->at_tick,
                     "tick at which the changes take effect; it must be in the future (default: the next tick)")
-        ->check(CLI::Range(std::int64_t{1}, std::int64_t{9'000'000'000'000'000}));
+        ->check(whole_number(1, 9'000'000'000'000'000));
   }
 }
 

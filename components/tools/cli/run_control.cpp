@@ -209,8 +209,7 @@ void add_run_control(CLI::App& app, Action& action) {
                   {"constrictor step", "constrictor step 50       # one second"},
                   fmt::format("0 done; {},\n  or no tick for 10 s; 130 interrupted by Ctrl-C", kRunStatuses)))
       ->add_option("TICKS", options->steps, "number of ticks, 1 to 1000000")
-      ->check(whole_number())
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000}))
+      ->check(whole_number(1, 1'000'000))
       ->capture_default_str();
   add("pace", "limit how fast a run goes", controls(msg::kRunPace),
       help_footer("While an operator has authority, lock-step is limited to real time. A pace that is set meanwhile "

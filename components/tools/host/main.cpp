@@ -77,5 +77,7 @@ int main(int argc, char** argv) {
       return exit_status::kUsage;
     }
   }
+  std::string program = "constrictor_host " + first;  // as its help and its errors of usage call it
+  argv[1] = program.data();
   return host_main(argc - 1, argv + 1, std::move(factories));
 }

@@ -135,7 +135,7 @@ void add_keys(CLI::App& app, Action& action) {
       ->excludes("--in-process");
   sub->add_option("--days", options->days, "[days] how long certificates and rights are valid")
       ->capture_default_str()
-      ->check(CLI::Range(1, 3650));
+      ->check(whole_number(1, 3650));
   sub->footer(help_footer(
       "Makes an authority for identities, another one for rights, and for each process of the manifest an identity\n"
       "that may write and read the topics of its components only. Further identities: operator (`constrictor` and\n"

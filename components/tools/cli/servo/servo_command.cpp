@@ -109,8 +109,10 @@ int zero(const ServoOptions& options) {
   return exit_status::kOk;
 }
 
-CLI::IsMember known_baud() {
-  return CLI::IsMember(std::vector<std::uint32_t>(std::begin(kBaudRates), std::end(kBaudRates)));
+CLI::Validator known_baud() {
+  std::vector<std::string> rates;
+  for (const auto rate : kBaudRates) rates.push_back(std::to_string(rate));
+  return one_of(rates);
 }
 
 CLI::App* add(CLI::App& group, const std::string& name, const std::string& what, Action& action, bool one_or_all,
@@ -121,7 +123,7 @@ CLI::App* add(CLI::App& group, const std::string& name, const std::string& what,
       ->capture_default_str()
       ->check(known_baud());
   if (!one_or_all) return sub;
-  sub->add_option("--id", options->id, "id of one servo")->check(CLI::Range(0, 252));
+  sub->add_option("--id", options->id, "id of one servo")->check(whole_number(0, 252));
   sub->add_flag("--all", options->all, "all servos at the port");
   return sub;
 }
@@ -131,36 +133,47 @@ CLI::App* add(CLI::App& group, const std::string& name, const std::string& what,
 void add_servo(CLI::App& app, Action& action) {
   auto options = std::make_shared<ServoOptions>();
   CLI::App* group = add_group(app, "servo", "commission the servos at a serial port");
-  add(*group, "scan", "list the devices that answer", action, false, options, scan_servos)
-      ->add_flag("--every-baud", options->every_baud, "try every baud rate (6 s)");
+  CLI::App* scan = add(*group, "scan", "list the devices that answer", action, false, options, scan_servos);
+  scan->add_flag("--every-baud", options->every_baud, "try every baud rate (6 s)");
   CLI::App* id = add(*group, "id", "give a servo another id", action, false, options, change_id);
-  id->add_option("--id", options->id, "present id")->required()->check(CLI::Range(0, 252));
-  id->add_option("--to", options->to, "new id")->required()->check(CLI::Range(0, 252));
+  id->add_option("--id", options->id, "present id")->required()->check(whole_number(0, 252));
+  id->add_option("--to", options->to, "new id")->required()->check(whole_number(0, 252));
   CLI::App* baud = add(*group, "baud", "give a servo another baud rate", action, false, options, change_baud);
-  baud->add_option("--id", options->id, "id of the servo")->required()->check(CLI::Range(0, 252));
+  baud->add_option("--id", options->id, "id of the servo")->required()->check(whole_number(0, 252));
   baud->add_option("--to", options->to_baud, "[bit/s] new baud rate")->required()->check(known_baud());
   CLI::App* limit = add(*group, "limits", "show the limits of servos, and set them", action, true, options, limits);
   limit->add_option("--current", options->current_a, "[A] limit of the current, and so of the torque");
   limit->add_option("--temperature", options->temperature_c, "[C] temperature at which the servo shuts down");
-  add(*group, "zero", "print the present positions as zero_steps for the bus file", action, true, options, zero);
+  CLI::App* at_zero =
+      add(*group, "zero", "print the present positions as zero_steps for the bus file", action, true, options, zero);
   CLI::App* on_off = add(*group, "torque", "switch the torque on (the servo stays where it is) or off", action, true,
                          options, switch_torque);
   on_off->add_option("STATE", options->state, "on or off")->required()->check(one_of({"on", "off"}));
-  add(*group, "monitor", "show position, current, voltage and temperature twice a second", action, true, options,
-      monitor_servos)
-      ->add_option("--rounds", options->rounds, "how often; 0: until Ctrl+C")
-      ->check(CLI::Range(0, 1'000'000));
-  const std::string footer = help_footer(
-      "The port is used by one program at a time: end the run that uses it first. A servo whose torque is on has a\n"
-      "locked EEPROM (id, limits). `torque off` also clears a tripped watchdog.",
-      {"constrictor servo scan --port /dev/ttyUSB0 --every-baud",
-       "constrictor servo id --port /dev/ttyUSB0 --id 1 --to 7",
-       "constrictor servo torque off --port /dev/ttyUSB0 --all", "constrictor servo monitor --port /dev/ttyUSB0 --all"},
-      "0 done; 1 no servo answers, one cannot be read, or two have one id; 64 wrong usage; 70 the port or a servo\n"
-      "  refuses, with the reason",
-      kDataEnvironment);
-  group->footer(footer);
-  for (CLI::App* sub : group->get_subcommands({})) sub->footer(footer);
+  CLI::App* monitor = add(*group, "monitor", "show position, current, voltage and temperature twice a second", action,
+                          true, options, monitor_servos);
+  monitor->add_option("--rounds", options->rounds, "how often; 0: until Ctrl+C")->check(whole_number(0, 1'000'000));
+  const auto footer = [](std::initializer_list<const char*> examples) {
+    return help_footer(
+        "The port is used by one program at a time: end the run that uses it first. A servo whose torque is on has a\n"
+        "locked EEPROM (id, limits). `torque off` also clears a tripped watchdog.",
+        examples,
+        "0 done; 1 no servo answers, one cannot be read, or two have one id; 64 wrong usage; 70 the port or a servo\n"
+        "  refuses, with the reason",
+        kDataEnvironment);
+  };
+  constexpr const char* kScan = "constrictor servo scan --port /dev/ttyUSB0 --every-baud";
+  constexpr const char* kId = "constrictor servo id --port /dev/ttyUSB0 --id 1 --to 7";
+  constexpr const char* kTorque = "constrictor servo torque off --port /dev/ttyUSB0 --all";
+  constexpr const char* kMonitor = "constrictor servo monitor --port /dev/ttyUSB0 --all";
+  group->footer(footer({kScan, kId, kTorque, kMonitor}));
+  scan->footer(footer({kScan}));
+  id->footer(footer({kId}));
+  baud->footer(footer({"constrictor servo baud --port /dev/ttyUSB0 --id 7 --to 1000000"}));
+  limit->footer(footer({"constrictor servo limits --port /dev/ttyUSB0 --all",
+                        "constrictor servo limits --port /dev/ttyUSB0 --id 7 --current 2 --temperature 70"}));
+  at_zero->footer(footer({"constrictor servo zero --port /dev/ttyUSB0 --all"}));
+  on_off->footer(footer({kTorque}));
+  monitor->footer(footer({kMonitor}));
 }
 
 }  // namespace constrictor::cli
