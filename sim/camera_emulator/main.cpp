@@ -111,8 +111,8 @@ void emulate(const Options& options, const Log& log) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app{"camera_emulator: serves what the camera of the emulated robot sees, as multipart JPEG over HTTP."};
-  app.add_option("--robot", options.robot, "robot file (YAML)")->check(CLI::ExistingFile);
-  app.add_option("--scenario", options.scenario, "scenario file (YAML)")->check(CLI::ExistingFile);
+  app.add_option("--robot", options.robot, "robot file (YAML)")->check(existing_file());
+  app.add_option("--scenario", options.scenario, "scenario file (YAML)")->check(existing_file());
   app.add_option("--seed", options.seed, "seed of the scenario and of the noise")->check(whole_number());
   app.add_option("--output", options.output,
                  "folder in which camera_emulator.url and the pipe camera_emulator.commands are made")

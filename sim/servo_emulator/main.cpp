@@ -107,9 +107,9 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{
       "servo_emulator: answers as the servos and sensor boards of a robot, on pseudo-terminals, in real time."};
-  app.add_option("--robot", options.robot, "robot file (YAML)")->check(CLI::ExistingFile);
-  app.add_option("--scenario", options.scenario, "scenario file (YAML)")->check(CLI::ExistingFile);
-  app.add_option("--bus", options.bus, "bus file (YAML): the servos, their ids and ports")->check(CLI::ExistingFile);
+  app.add_option("--robot", options.robot, "robot file (YAML)")->check(existing_file());
+  app.add_option("--scenario", options.scenario, "scenario file (YAML)")->check(existing_file());
+  app.add_option("--bus", options.bus, "bus file (YAML): the servos, their ids and ports")->check(existing_file());
   app.add_option("--seed", options.seed, "seed of the scenario and of the noise")->check(whole_number());
   app.add_option("--output", options.output,
                  "folder in which the ports, the pipe servo_emulator.commands, and the files world.jsonl,\nworld.state "

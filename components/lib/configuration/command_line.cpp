@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "configuration/closest_name.hpp"
@@ -21,6 +23,21 @@ std::optional<Number> parse(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+/// Accepts paths of files, of folders, or of both.
+CLI::Validator existing(const char* shown_in_help, bool files, bool folders) {
+  const std::string accepted = files && folders ? "file or folder" : files ? "file" : "folder";
+  return {[=](std::string& text) {
+            std::error_code unreachable;  // for example because symbolic links form a loop
+            const auto status = std::filesystem::status(text, unreachable);
+            if (!std::filesystem::exists(status))
+              return fmt::format("found no {} '{}', accepted one that exists", accepted, text);
+            const bool folder = std::filesystem::is_directory(status);
+            if (folder ? folders : files) return std::string{};
+            return fmt::format("found the {} '{}', accepted a {}", folder ? "folder" : "file", text, accepted);
+          },
+          shown_in_help};
 }
 
 /// The subcommand that the words of the command line name.
@@ -85,6 +102,10 @@ CLI::Validator one_of(std::vector<std::string> words) {
           },
           std::move(shown_in_help)};
 }
+
+CLI::Validator existing_file() { return existing("FILE", true, false); }
+CLI::Validator existing_folder() { return existing("FOLDER", false, true); }
+CLI::Validator existing_path() { return existing("PATH", true, true); }
 
 std::string explain_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& sub = chosen_subcommand(app);

@@ -25,6 +25,11 @@ CLI::Validator number(double min, double max, const std::string& unit);
 /// Accepts only these words, and suggests the closest one.
 CLI::Validator one_of(std::vector<std::string> words);
 
+/// Accept only the path of a file, a folder, or either of them, that exists.
+CLI::Validator existing_file();
+CLI::Validator existing_folder();
+CLI::Validator existing_path();
+
 /// The error message for a command line that `app` could not parse, with the closest name for a mistyped subcommand or
 /// option.
 std::string explain_parse_error(const CLI::App& app, const CLI::ParseError& error);

@@ -132,8 +132,8 @@ void add_commands(CLI::App& app, Action& action) {
                               action, runs, [](const Directories& chosen) { return diff_command(chosen.a, chosen.b); });
   diff->add_option("RUN_A", runs->a, "report directory or recording (run.mcap) of a run")
       ->required()
-      ->check(CLI::ExistingPath);
-  diff->add_option("RUN_B", runs->b, "the same of another run")->required()->check(CLI::ExistingPath);
+      ->check(existing_path());
+  diff->add_option("RUN_B", runs->b, "the same of another run")->required()->check(existing_path());
   diff->footer(
       "Compares the hashes of everything that was published at every tick. If both runs were made with\n"
       "`constrictor run --record`, it also names the field and both values. Equal runs are equal in every bit of "

@@ -88,7 +88,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       run->add_option("--resume", options->resume_dir,
                       "report directory of a run that was interrupted: continue it; only --domain and --view "
                       "may be given in addition")
-          ->check(CLI::ExistingDirectory);
+          ->check(existing_folder());
   for (CLI::Option* other : run->get_options()) {
     const std::string name = other->get_name();
     if (other != resume && name != "--domain" && name != "--help" && !name.starts_with("--view"))

@@ -168,7 +168,7 @@ void add_serve(CLI::App& app, Action& action) {
       ->add_option("--token-file", options->token_file,
                    "file with the token of the runs, the same on all hosts and readable by its owner only;\n"
                    "without it any program in the domain may command the robot")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   serve->footer(help_footer(
       "For a host that runs its part of the robot from the time when it is switched on. No launcher is needed: a run\n"
       "begins when the last member of the roster has joined, on whatever host. A process that dies comes back into "

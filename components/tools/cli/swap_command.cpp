@@ -104,7 +104,7 @@ void add_swap(CLI::App& app, Action& action) {
                              action, options, swap);
   sub->add_option("COMPONENT", options->component, "member of the run with a process of its own")->required();
   sub->add_option("--program", options->program, "program of this build, or an absolute path")->required();
-  sub->add_option("--config", options->config, "its configuration (default: its own)")->check(CLI::ExistingFile);
+  sub->add_option("--config", options->config, "its configuration (default: its own)")->check(existing_file());
   add_run_option(*sub, options->domain);
   sub->footer(help_footer(
       "The component's process is killed, and the launcher starts the other program as its next incarnation. It "

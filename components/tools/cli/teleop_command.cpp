@@ -219,7 +219,7 @@ void add_teleop(CLI::App& app, Action& action) {
       ->excludes("--drive");
   sub->add_option("--mapping", options->gamepad.mapping,
                   "which stick and button does what (YAML; default: components/tools/cli/gamepad/gamepad.yaml)")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   sub->footer(help_footer(
       "The first key that moves the robot takes authority; q or Ctrl-C releases it. The screen shows the keys; the "
       "space bar is the emergency\nstop. If this program or its terminal dies, the robot holds its posture within half "

@@ -36,7 +36,7 @@ std::optional<std::uint32_t> domain_of_environment() {
 /// The options that all parts have.
 void add_options(CLI::App& sub, Options& options) {
   sub.add_option("--profile", options.profile, "what is expected, and how the part is tried (YAML)")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   sub.add_option("--json", options.json, "file for the results");
   sub.add_flag("--yes", options.yes, "do not ask before joints are moved");
   sub.add_flag("--list", options.list, "print all checks, and what they expect; moves nothing");

@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
       ->envname("CONSTRICTOR_DOMAIN")
       ->check(whole_number(0, 229));
   app.add_option("--token-file", token_file, "file with the token of a run that was started on another host")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   app.add_option("--port", web.port, "TCP port for web pages and WebSockets; 0: a free one")
       ->check(whole_number(0, 65535))
       ->capture_default_str();

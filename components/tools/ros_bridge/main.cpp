@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
                "use ROS 2's domain on this host only; the same as ROS_LOCALHOST_ONLY=1 or "
                "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST");
   app.add_option("--robot", robot, "robot file (default: that of the run if it was started on this host, else mamba)")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   app.add_option("--level", level, "level of the requests for velocities and tasks")
       ->check(one_of({"operator", "external"}))
       ->capture_default_str();

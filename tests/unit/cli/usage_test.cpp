@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
 
 #include "cli/subcommands.hpp"
+#include "configuration/temporary_folder.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -18,6 +21,9 @@ class CommandLineTest : public ::testing::Test {
     run->add_option("--seed", seed_)->check(whole_number());
     run->add_option("--max-sim-time", limit_s_)->check(number(0.0, 1e6, "s"));
     run->add_option("--domain", domain_)->check(whole_number(0, 229));
+    run->add_option("--file", path_)->check(existing_file());
+    run->add_option("--folder", path_)->check(existing_folder());
+    run->add_option("--either", path_)->check(existing_path());
     auto* topic = app_.add_subcommand("topic");
     topic->require_subcommand(1);
     topic->add_subcommand("echo")->add_flag("--json");
@@ -37,6 +43,7 @@ class CommandLineTest : public ::testing::Test {
   std::uint64_t seed_ = 0;
   std::uint64_t domain_ = 0;
   double limit_s_ = 0.0;
+  std::string path_;
 };
 
 TEST_F(CommandLineTest, AcceptsTheLargestSeedAndNoLargerOne) {
@@ -58,6 +65,23 @@ TEST_F(CommandLineTest, AcceptsOnlyFiniteNumbersWithinBounds) {
         << limit;
   }
   EXPECT_NE(error({"run", "--domain", "230"}).find("accepted a whole number from 0 to 229"), std::string::npos);
+}
+
+TEST_F(CommandLineTest, AcceptsOnlyPathsThatExist) {
+  const TemporaryFolder folder("usage");
+  const std::string here = folder.path().string();
+  const std::string file = here + "/file";
+  std::ofstream(file) << "text";
+  std::filesystem::create_symlink("circle", folder.path() / "circle");  // a symbolic link to itself
+  EXPECT_EQ(error({"run", "--file", file, "--folder", here, "--either", file}), "");
+  EXPECT_EQ(error({"run", "--either", here}), "");
+  const std::string help = " (see constrictor run --help)";
+  EXPECT_EQ(error({"run", "--file", "nofile"}), "--file: found no file 'nofile', accepted one that exists" + help);
+  EXPECT_EQ(error({"run", "--folder", "none"}), "--folder: found no folder 'none', accepted one that exists" + help);
+  EXPECT_EQ(error({"run", "--either", here + "/circle"}),
+            "--either: found no file or folder '" + here + "/circle', accepted one that exists" + help);
+  EXPECT_EQ(error({"run", "--file", here}), "--file: found the folder '" + here + "', accepted a file" + help);
+  EXPECT_EQ(error({"run", "--folder", file}), "--folder: found the file '" + file + "', accepted a folder" + help);
 }
 
 TEST_F(CommandLineTest, NamesTheClosestSubcommandOrOption) {

@@ -223,7 +223,7 @@ void add_evaluation_options(CLI::App& app, EvaluateOptions& options) {
       ->capture_default_str();
   app.add_option("--merge", options.merge,
                  "do no runs: gather those of these folders, which hold parts of this evaluation, in --output")
-      ->check(CLI::ExistingDirectory);
+      ->check(existing_folder());
   app.add_option("--keep", options.request.keep, "of which runs figure, journals and logs are kept")
       ->capture_default_str()
       ->check(one_of({"all", "failed", "none"}));

@@ -206,7 +206,7 @@ void add_log(CLI::App& app, Action& action) {
                              action, options, log);
   sub->add_option("FOLDER", options->folder,
                   "report folder of a run, also of one that has ended (default: the run that goes on, over DDS)")
-      ->check(CLI::ExistingDirectory);
+      ->check(existing_folder());
   sub->add_flag("--follow,-f", options->follow, "print new lines until Ctrl-C or the end of the run");
   sub->add_option("--level", options->level, "only lines of this level and of those above it: info, warning, error")
       ->check(one_of(levels))

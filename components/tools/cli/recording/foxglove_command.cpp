@@ -122,7 +122,7 @@ void add_foxglove(CLI::App& app, Action& action) {
   auto options = std::make_shared<FoxgloveOptions>();
   auto* sub = add_subcommand(app, "foxglove", "copy a recording and add the 3D scene, images and log for Foxglove",
                              action, options, foxglove);
-  sub->add_option("FILE", options->file, kFileMeaning)->required()->check(CLI::ExistingPath);
+  sub->add_option("FILE", options->file, kFileMeaning)->required()->check(existing_path());
   sub->add_option("-o,--output", options->output, "file to write (MCAP)")->capture_default_str();
   sub->add_flag("--force", options->force, "replace the file if it exists, when the copy is complete");
   sub->footer(help_footer(

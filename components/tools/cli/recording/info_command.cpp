@@ -158,7 +158,7 @@ void add_recording_files(CLI::App& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   auto* info_app = add_subcommand(app, "info", "describe a recording: topics, rates, events, mission, what is missing",
                                   action, options, show_info);
-  info_app->add_option("FILE", options->file, kFileMeaning)->required()->check(CLI::ExistingPath);
+  info_app->add_option("FILE", options->file, kFileMeaning)->required()->check(existing_path());
   info_app->add_flag("--json", options->json, "print JSON instead of text, for scripts");
   info_app->footer(help_footer(
       "Reads the whole file and checks everything in it. In the recording of a whole run in lock-step, the ticks name\n"
@@ -172,7 +172,7 @@ void add_recording_files(CLI::App& app, Action& action) {
   auto file = std::make_shared<std::string>();
   auto* recover_app = add_subcommand(app, "recover", "finish a recording whose writer was killed, or that is damaged",
                                      action, file, recover);
-  recover_app->add_option("FILE", *file, kFileMeaning)->required()->check(CLI::ExistingPath);
+  recover_app->add_option("FILE", *file, kFileMeaning)->required()->check(existing_path());
   recover_app->footer(help_footer(
       "If its writer was killed, the file is finished: everything up to the last complete chunk, with indexes and\n"
       "summary. If it is damaged, everything that can be read goes into a new file of its name, and the damaged one "

@@ -108,7 +108,7 @@ int film(const FilmOptions& options) {
 }
 
 void add_file(CLI::App& sub, std::string& file) {
-  sub.add_option("FILE", file, kFileMeaning)->required()->check(CLI::ExistingPath);
+  sub.add_option("FILE", file, kFileMeaning)->required()->check(existing_path());
 }
 
 constexpr const char* kStatuses =

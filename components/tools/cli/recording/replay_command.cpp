@@ -74,7 +74,7 @@ void add_replay(CLI::App& app, Action& action) {
   auto options = std::make_shared<ReplayOptions>();
   auto* sub = add_subcommand(app, "replay", "replay a recording onto DDS, or repeat a component on its recorded inputs",
                              action, options, replay);
-  sub->add_option("FILE", options->file, kFileMeaning)->required()->check(CLI::ExistingPath);
+  sub->add_option("FILE", options->file, kFileMeaning)->required()->check(existing_path());
   auto* component =
       sub->add_option("--component", options->components,
                       "repeat this component on its recorded inputs, without DDS, and compare its outputs "
