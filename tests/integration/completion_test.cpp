@@ -80,7 +80,20 @@ TEST_F(Completion, EveryShellOffersOnlyTheWordsThatTheSubcommandAccepts) {
                                    {{"scenario", "random", "--difficulty", ""}, "middle", "--seed"},
                                    {{"robot", ""}, "export", "list"},
                                    {{"robot", "export", "--robot", ""}, "serpens", "--mjcf"},
-                                   {{"node", "info", "n"}, "navigation", "list"}};
+                                   {{"node", "info", "n"}, "navigation", "list"},
+                                   {{"swap", "c"}, "camera", "case_study"},
+                                   {{"serve", "c"}, "camera", "case_study"},
+                                   {{"log", "--component", ""}, "navigation", "--since"},
+                                   {{"log", "--level", ""}, "warning", "--since"},
+                                   {{"replay", "--component", ""}, "navigation", "--topic"},
+                                   {{"replay", "--topic", "joint_s"}, "joint_state", "--topic"},
+                                   {{"record", "--topic", "joint_s"}, "joint_state", "--images"},
+                                   {{"run", "--config", "n"}, "navigation=", "navigation"},
+                                   {{"run", "--images", ""}, "recompute", "case_study"},
+                                   {{"figure", "--format", ""}, "pdf", "--size"},
+                                   {{"servo", "torque", "o"}, "off", "zero"},
+                                   {{"camera", ""}, "calibrate", "plant"},
+                                   {{"conform", ""}, "planner", "mount"}};
   std::vector<Words> lines;
   for (const auto& c : cases) lines.push_back(c.typed);
   for (const std::string shell : {"bash", "zsh", "fish"}) {
@@ -94,6 +107,18 @@ TEST_F(Completion, EveryShellOffersOnlyTheWordsThatTheSubcommandAccepts) {
           << shell << " " << cases[i].not_offered << ": " << offered[i];
     }
   }
+}
+
+TEST_F(Completion, BashCompletesWhatFollowsAnEqualsSign) {
+  const Words offered = offers("bash", {{"check", "--manifest", "=", "man"},
+                                        {"check", "--manifest", "="},
+                                        {"run", "--config", "navigation", "="},
+                                        {"run", "--config", "navigation", "=", "c"}});
+  ASSERT_EQ(offered.size(), 4u);
+  EXPECT_EQ(offered[0], " manual ");
+  EXPECT_NE(offered[1].find(" manual "), std::string::npos) << offered[1];
+  EXPECT_EQ(offered[2], " ") << "then bash offers files";
+  EXPECT_EQ(offered[3], " ");
 }
 
 }  // namespace

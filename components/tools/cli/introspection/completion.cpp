@@ -53,11 +53,12 @@ std::string typed(std::string list) {
   return words;
 }
 
-/// The different values of a column of the table of topics, in the order of its rows.
-std::string words_of(std::string_view TopicInfo::*column) {
-  std::vector<std::string_view> words;
+/// The different values of a column of the table of topics, in the order of its rows, each with this ending.
+std::string words_of(std::string_view TopicInfo::*column, const char* ending = "") {
+  std::vector<std::string> words;
   for (const auto& info : topics::kInfos) {
-    if (std::count(words.begin(), words.end(), info.*column) == 0) words.push_back(info.*column);
+    const std::string word = std::string(info.*column) + ending;
+    if (std::count(words.begin(), words.end(), word) == 0) words.push_back(word);
   }
   return fmt::format("{}", fmt::join(words, " "));
 }
@@ -69,10 +70,12 @@ Values values_of_path(const std::string& path) {
   if (path == "param get" || path == "param set" || path == "param list")
     return {"", "constrictor param list --names 2>/dev/null"};
   if (path == "task start") return {typed(task_words()), ""};
-  if (path == "completion") return {"bash zsh fish", ""};
   if (path == "pace") return {"lockstep 1x 2x", ""};
-  if (path == "node info" || path == "host") return {words_of(&TopicInfo::writer), ""};
-  if (path == "list") return {"scenarios robots manifests components", ""};
+  if (path == "node info" || path == "host" || path == "swap" || path == "serve")
+    return {words_of(&TopicInfo::writer), ""};
+  // Other programs, which `constrictor` becomes: their subcommands are not among those of `app`.
+  if (path == "camera") return {"show calibrate mount colours", ""};
+  if (path == "conform") return {"plant camera perception control planner", ""};
   if (path == "run" || path == "check" || path == "evaluate" || path == "scenario show")
     return {"", names_command("scenarios")};
   if (path == "topic find") return {words_of(&TopicInfo::type), ""};
@@ -91,19 +94,34 @@ Values values_of_option(const std::string& name) {
   if (name == "goal") return {"any", ""};
   if (name == "manifest") return {"", names_command("manifests")};
   if (name == "robot") return {"", names_command("robots")};
-  if (name == "group") return {words_of(&TopicInfo::writer), ""};
+  if (name == "group" || name == "component") return {words_of(&TopicInfo::writer), ""};
+  if (name == "topic") return {words_of(&TopicInfo::name), ""};
   return {};
+}
+
+/// The words that one_of() accepts for this option: the validator shows them as {A,B} behind the type.
+Values values_of_check(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const auto begin = type.rfind('{');
+  const auto end = type.find('}', begin);
+  if (begin == std::string::npos || end == std::string::npos) return {};
+  std::string words = type.substr(begin + 1, end - begin - 1);
+  std::replace(words.begin(), words.end(), ',', ' ');
+  return {words, ""};
 }
 
 /// Collects the options of an app and of its option groups, which CLI11 represents as subcommands without a name.
 void collect_options(const CLI::App& app, Node& node) {
   for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional() && !node.values.any()) node.values = values_of_check(*option);
     for (const auto& name : option->get_lnames()) {
       OptionWord word;
       word.text = "--" + name;
       word.what = first_line(option->get_description());
       word.takes_value = option->get_items_expected_max() > 0;
       word.values = values_of_option(name);
+      if (word.what.starts_with("NAME=FILE")) word.values = {words_of(&TopicInfo::writer, "="), ""};
+      if (!word.values.any()) word.values = values_of_check(*option);
       node.options.push_back(word);
     }
   }
@@ -153,19 +171,25 @@ std::string bash_script(const std::string& name, const std::vector<Node>& nodes)
   }
   return fmt::format(R"(# Completion of {0} for bash:  source <({0} completion bash)
 _{0}() {{
-  local node='' next i words='' value='' current="${{COMP_WORDS[COMP_CWORD]}}"
+  local node='' next i words='' value='' equals=''
+  local current="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}"
   for ((i = 1; i < COMP_CWORD; i++)); do
     next="${{node:+$node }}${{COMP_WORDS[i]}}"
     case "$next" in {1}) node="$next" ;; esac
   done
+  # bash makes three words of --option=value, and of NAME=FILE.
+  if [ "$before" = '=' ]; then before="${{COMP_WORDS[COMP_CWORD-2]}}" equals=1; fi
+  if [ "$current" = '=' ]; then current='' equals=1; fi
   # The value of an option: its words, or else a file name, which the shell completes.
-  case "$node ${{COMP_WORDS[COMP_CWORD-1]}}" in
-{3}  esac
+  case "$node $before" in
+{3}    *) value="$equals" ;;
+  esac
   if [ -z "$value" ]; then
     case "$node" in
 {2}    esac
   fi
   COMPREPLY=($(compgen -W "$words" -- "$current"))
+  case "${{COMPREPLY[*]}}" in *=) compopt -o nospace 2>/dev/null ;; esac
 }}
 complete -o default -F _{0} {0}
 )",
@@ -208,9 +232,11 @@ end
     for (const auto& sub : node.subcommands)
       script += fmt::format("{} -f -a {} -d {}\n", at, sub.text, fish_quoted(sub.what));
     for (const auto& option : node.options) {
-      const std::string value = !option.takes_value   ? ""
-                                : option.values.any() ? " -x -a " + fish_values(option.values)
-                                                      : " -r";
+      const bool file_follows = option.values.words.ends_with("=");  // NAME=FILE
+      const std::string value = !option.takes_value ? ""
+                                : option.values.any()
+                                    ? (file_follows ? " -r -a " : " -x -a ") + fish_values(option.values)
+                                    : " -r";
       script += fmt::format("{} -l {}{} -d {}\n", at, option.text.substr(2), value, fish_quoted(option.what));
     }
     if (node.values.any()) script += fmt::format("{} -f -a {}\n", at, fish_values(node.values));
