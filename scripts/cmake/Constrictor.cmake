@@ -105,7 +105,7 @@ set(CONSTRICTOR_LAYERS
   "components/lib/barrier => idl|components/lib/(component|configuration)"
   "components/lib/device_faults => none"
   "components/lib/faults => idl|components/lib/(component|barrier|configuration|device_faults)"
-  "components/lib/cyclone => idl"
+  "components/lib/cyclone => idl|components/lib/configuration"
   "components/lib/recording => idl"
   "components/lib/client => idl|components/lib/(component|cyclone)"
   "components/lib/runtime => idl|components/lib/(barrier|component|configuration|cyclone|faults|log|recording|sched.*)"

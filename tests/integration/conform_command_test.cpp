@@ -41,6 +41,10 @@ TEST_F(ConformCommand, RefusesAMissingManifestBeforeItAsks) {
     EXPECT_EQ(command({"conform", part, "--manifest", "no_such.yaml"}), exit_status::kConfiguration) << output_;
     EXPECT_NE(output_.find("no_such.yaml"), std::string::npos) << output_;
     EXPECT_EQ(output_.find("Type yes"), std::string::npos) << output_;
+    EXPECT_EQ(command({"conform", part, "--manifest", "case_stdy"}), exit_status::kConfiguration) << output_;
+    EXPECT_NE(output_.find("manifest: found 'case_stdy', accepted a file or one of case_study"), std::string::npos)
+        << output_;
+    EXPECT_NE(output_.find(", did you mean 'case_study'?"), std::string::npos) << output_;
   }
 }
 

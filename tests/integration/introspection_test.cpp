@@ -218,6 +218,8 @@ TEST_F(Introspection, ListsTopicsNodesAndTheStateOfARun) {
 TEST_F(Introspection, StatusDoesNotShowAWaitThatIsOver) {
   Process run = toys();
   ASSERT_TRUE(run.wait_for("simulated", 20s)) << run.output() << run.errors();
+  EXPECT_EQ(command({"node", "info", "contrl"}), 70);
+  EXPECT_NE(output_.find("hosts such a component, did you mean 'control'? ("), std::string::npos) << output_;
   const json node = json_of({"node", "info", "control"});
   ASSERT_TRUE(node.is_array() && !node.empty()) << output_;
   const auto pid = node[0]["pid"].get<pid_t>();

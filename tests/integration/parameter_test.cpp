@@ -145,7 +145,9 @@ TEST_F(RunTimeParameters, TheCommandListsSetsAndRefusesParameters) {
   }
   EXPECT_EQ(shown, all.size());
   EXPECT_EQ(command({"param", "list", "nosuch"}), 1);
-  EXPECT_NE(output_.find("no parameter begins with 'nosuch'"), std::string::npos) << output_;
+  EXPECT_EQ(output_, "param: no parameter begins with 'nosuch' (`constrictor param list` lists all)\n");
+  EXPECT_EQ(command({"param", "list", "control.motoin"}), 1);
+  EXPECT_NE(output_.find("'control.motoin', did you mean 'control.motion'? ("), std::string::npos) << output_;
   EXPECT_EQ(command({"param", "list", "--names", "control.squeeze"}), 0);
   EXPECT_EQ(output_, "control.squeeze.opening_share\ncontrol.squeeze.rate_rad_s\n");
 

@@ -53,6 +53,8 @@ TEST_F(SwapTest, RefusesWhatWouldEndTheRun) {
   EXPECT_NE(output_.find("servo_bus: found the component camera, accepted servo_bus"), std::string::npos) << output_;
   EXPECT_EQ(command({"swap", "physics", "--program", "video_capture"}), exit_status::kUsage) << output_;
   EXPECT_EQ(command({"swap", "nobody", "--program", "video_capture"}), exit_status::kUsage) << output_;
+  EXPECT_EQ(command({"swap", "camra", "--program", "video_capture"}), exit_status::kUsage) << output_;
+  EXPECT_NE(output_.find(", did you mean 'camera'?"), std::string::npos) << output_;
   EXPECT_EQ(command({"end"}), exit_status::kOk) << output_;
   for (const auto& process : report("run")["processes"]) EXPECT_EQ(process["restarts"], 0) << process["name"];
 }

@@ -79,6 +79,9 @@ TEST_F(Introspection, EchoFiltersRoundsAndSummarises) {
   EXPECT_EQ(command({"topic", "echo", "perception/objects", "--filter", "blob_cnt > 1", "--run", number}), 64);
   EXPECT_NE(output_.find("there is no field 'blob_cnt', did you mean 'blob_count'?"), std::string::npos) << output_;
   EXPECT_EQ(command({"topic", "echo", "perception/objects", "--filter", "blob_count >", "--run", number}), 64);
+  EXPECT_EQ(command({"topic", "echo", "perception/objects", "--field", "header.tik", "--run", number}), 64);
+  EXPECT_NE(output_.find("found 'tik', accepted "), std::string::npos) << output_;
+  EXPECT_NE(output_.find(", did you mean 'tick'?"), std::string::npos) << output_;
 
   const dds::Writer<msg::CameraImage> images(domain.participant(), "camera/image", 4);
   std::vector<std::uint8_t> pixels(2 * 3 * 3, 200);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "configuration/closest_name.hpp"
 #include "configuration/counted.hpp"
 #include "constrictor/constants.hpp"
 
@@ -19,7 +20,8 @@ std::string plain(std::string text) {
 }
 
 std::string wrong(const std::string& key, const std::string& value, const ConstantGroup& group) {
-  return fmt::format("{}: found '{}', accepted {}", key, value, listed(group, 1));
+  return fmt::format("{}: found '{}', accepted {}", key, value, listed(group, 1)) +
+         did_you_mean(plain(value), names_of(group, 1));
 }
 
 /// The value of a name. The first name of a group means "none" and is not accepted.
@@ -86,10 +88,11 @@ std::string set_task_parameter(msg::TaskParameters& parameters, const std::strin
     parameters.*row.field = number;
     return {};
   }
-  return fmt::format(
-      "parameter: found '{}', accepted line_colour, object_colour, object_handle, drop_zone_colour, direction, "
-      "timeout_s, clearance_m, wrap_scale, path",
-      key);
+  const std::vector<std::string> accepted = {"line_colour",      "object_colour", "object_handle",
+                                             "drop_zone_colour", "direction",     "timeout_s",
+                                             "clearance_m",      "wrap_scale",    "path"};
+  return fmt::format("parameter: found '{}', accepted {}{}", key, fmt::join(accepted, ", "),
+                     did_you_mean(name, accepted));
 }
 
 std::string set_path(msg::Path& path, const std::vector<std::string>& points) {

@@ -1,6 +1,7 @@
 #include "component/data_path.hpp"
 
 #include <cstdlib>
+#include <set>
 
 namespace constrictor {
 
@@ -30,6 +31,17 @@ fs::path data_path(const fs::path& relative) {
     if (fs::exists(folder / relative, error)) return folder / relative;
   }
   return fs::path(CONSTRICTOR_SOURCE_DIR) / relative;
+}
+
+std::vector<std::string> data_names(const fs::path& relative) {
+  std::set<std::string> names;
+  std::error_code no_folder;
+  for (const auto& folder : data_folders()) {
+    for (const auto& entry : fs::directory_iterator(folder / relative, no_folder)) {
+      if (entry.path().extension() == ".yaml") names.insert(entry.path().stem());
+    }
+  }
+  return {names.begin(), names.end()};
 }
 
 }  // namespace constrictor

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace constrictor {
@@ -15,5 +16,8 @@ namespace constrictor {
 /// "components/control/control.yaml": that of the first of data_folders() that has it. Returns a path in the source
 /// tree if none has it.
 [[nodiscard]] std::filesystem::path data_path(const std::filesystem::path& relative);
+
+/// The names, without ".yaml", of the YAML files in this folder of the data_folders(), sorted.
+[[nodiscard]] std::vector<std::string> data_names(const std::filesystem::path& relative);
 
 }  // namespace constrictor

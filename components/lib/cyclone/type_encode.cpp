@@ -1,6 +1,7 @@
 // Encodes JSON to CDR (XCDR1, little-endian) by a described type.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -8,7 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <type_traits>
+#include <vector>
 
+#include "configuration/closest_name.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/field_table.hpp"
 #include "constrictor/json.hpp"
@@ -89,9 +92,10 @@ class Encoder {
     const ConstantGroup* group = field ? field->info.constants : nullptr;
     const auto accepted = [&] {
       if (!group) return fmt::format("a whole number from {:.0f} to {:.0f}", least, most);
-      const auto names = names_of(*group, static_cast<std::uint8_t>(least));
-      const auto count = std::min(names.size(), static_cast<std::size_t>(most - least) + 1);
-      return fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(count), ", "));
+      auto names = names_of(*group, static_cast<std::uint8_t>(least));
+      names.resize(std::min(names.size(), static_cast<std::size_t>(most - least) + 1));
+      return fmt::format("{}{}", fmt::join(names, ", "),
+                         value.is_string() ? did_you_mean(value.get<std::string>(), names) : "");
     };
     if (!given) {
       if (least > 0.0) wrong(path, std::string("nothing"), accepted());
@@ -153,12 +157,14 @@ class Encoder {
   void enumeration(const TypeNode& type, const Json& value, bool given, const std::string& path) {
     if (!given && !type.literals.empty())
       return primitive(type.primitive, Json(type.literals.begin()->first), true, nullptr, path);
-    std::string names;
+    std::vector<std::string> names;
     for (const auto& [number, name] : type.literals) {
       if (value == Json(name) || value == Json(number)) return primitive(type.primitive, number, true, nullptr, path);
-      names += (names.empty() ? "" : ", ") + name;
+      names.push_back(name);
     }
-    wrong(path, value, names);
+    wrong(path, value,
+          fmt::format("{}{}", fmt::join(names, ", "),
+                      value.is_string() ? did_you_mean(value.get<std::string>(), names) : ""));
   }
 
   void text(const std::string& text, std::uint32_t most, const std::string& path) {
@@ -225,14 +231,11 @@ class Encoder {
 
   static void check_names(const TypeNode& type, const Json& value, const std::string& path) {
     for (const auto& [name, ignored] : value.items()) {
-      std::string names;
-      bool known = false;
-      for (const auto& member : type.members) {
-        known = known || member.name == name;
-        names += (names.empty() ? "" : ", ") + member.name;
-      }
-      if (!known)
-        throw std::invalid_argument(named(path) + ": there is no field '" + name + "'; accepted are " + names);
+      std::vector<std::string> names;
+      for (const auto& member : type.members) names.push_back(member.name);
+      if (std::find(names.begin(), names.end(), name) == names.end())
+        throw std::invalid_argument(fmt::format("{}: there is no field '{}'; accepted are {}{}", named(path), name,
+                                                fmt::join(names, ", "), did_you_mean(name, names)));
     }
   }
 

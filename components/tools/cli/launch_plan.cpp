@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <set>
 #include <sstream>
 #include <system_error>
 
@@ -64,9 +63,10 @@ void add_config_files(LaunchManifest& manifest, const std::vector<std::string>& 
       throw ConfigurationError(fmt::format("--config: found component '{}', accepted {}{}", name,
                                            fmt::join(roster, ", "), did_you_mean(name, roster)));
     }
-    manifest.config_files[name] = fs::absolute(text.substr(equals + 1));
+    const auto& file = manifest.config_files[name] = fs::absolute(text.substr(equals + 1));
+    require_file("--config " + name, file);
   }
-  for (const auto& [name, file] : manifest.config_files) require_file("configuration of " + name, file);
+  for (const auto& [name, file] : manifest.config_files) require_file("manifest: config of " + name, file);
 }
 
 /// The options of the plant's process for --pace.
@@ -105,16 +105,7 @@ std::string hint_of(const std::string& text, const std::vector<std::string>& nam
 
 }  // namespace
 
-std::vector<std::string> names_of(const NamedFiles& files) {
-  std::set<std::string> names;
-  std::error_code no_folder;
-  for (const auto& folder : data_folders()) {
-    for (const auto& entry : fs::directory_iterator(folder / files.folder, no_folder)) {
-      if (entry.path().extension() == ".yaml") names.insert(entry.path().stem());
-    }
-  }
-  return {names.begin(), names.end()};
-}
+std::vector<std::string> names_of(const NamedFiles& files) { return data_names(files.folder); }
 
 fs::path find_file(const std::string& text, const NamedFiles& files) {
   if (is_file(text)) return fs::absolute(text);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "cli/interrupt.hpp"
 #include "cli/introspection/domain_view.hpp"
@@ -68,6 +69,17 @@ void report_silent(const ParameterView& view) {
   }
 }
 
+/// The names of the parameters, and those of their components and sections.
+std::vector<std::string> prefixes_of(const ParameterView& view) {
+  std::set<std::string> prefixes;
+  for (const auto& [name, owned] : view.parameters) {
+    for (std::size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', dot + 1))
+      prefixes.insert(name.substr(0, dot));
+    prefixes.insert(name);
+  }
+  return {prefixes.begin(), prefixes.end()};
+}
+
 int list_parameters(const ParamOptions& options) {
   const dds::Domain domain(join_run(options.view.domain).domain);
   const ParameterView view = read_parameters(domain.participant());
@@ -81,15 +93,14 @@ int list_parameters(const ParamOptions& options) {
     for (const double value : {owned.parameter.value, owned.parameter.default_value})
       value_width = std::max(value_width, cell(owned.parameter, value).size());
   }
-  if (!options.view.json && !options.names)
-    fmt::print("  {:<{}} {:>{}} {:>{}} {:<11} {:<18} {}\n", "name", width, "value", value_width, "default", value_width,
-               "unit", "accepted", "meaning");
   for (const auto& [name, owned] : view.parameters) {
     const msg::Parameter& p = owned.parameter;
     if (name.rfind(options.name, 0) != 0) continue;
     begins = true;
     if (options.changed && p.changed_tick < 0 && p.pending_tick < 0) continue;
-    ++shown;
+    if (shown++ == 0 && !options.view.json && !options.names)
+      fmt::print("  {:<{}} {:>{}} {:>{}} {:<11} {:<18} {}\n", "name", width, "value", value_width, "default",
+                 value_width, "unit", "accepted", "meaning");
     if (options.view.json) json.push_back(to_json(owned));
     else if (options.names) fmt::print("{}\n", name);
     else
@@ -100,8 +111,8 @@ int list_parameters(const ParamOptions& options) {
   if (options.view.json) fmt::print("{}\n", json_text(json, 2));
   report_silent(view);
   if (!begins && !view.parameters.empty())
-    std::fprintf(stderr, "param: no parameter begins with '%s'; `constrictor param list` lists all\n",
-                 options.name.c_str());
+    fmt::print(stderr, "param: no parameter begins with '{}'{} (`constrictor param list` lists all)\n", options.name,
+               did_you_mean(options.name, prefixes_of(view)));
   else if (begins && shown == 0 && !options.view.json)
     std::fprintf(stderr, "param: none of these parameters was changed\n");
   return begins ? exit_status::kOk : exit_status::kFailed;

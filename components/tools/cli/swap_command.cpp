@@ -14,6 +14,7 @@
 #include "cli/swap.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
+#include "configuration/closest_name.hpp"
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
 #include "runtime/host.hpp"
@@ -59,8 +60,8 @@ const ProcessPlan& process_of(const SwapOptions& options, const LaunchPlan& plan
                       options.component, process.name()));
     return process;
   }
-  throw UsageError(
-      fmt::format("swap: found component '{}', accepted one of {}", options.component, fmt::join(plan.roster, ", ")));
+  throw UsageError(fmt::format("swap: found component '{}', accepted one of {}{}", options.component,
+                               fmt::join(plan.roster, ", "), did_you_mean(options.component, plan.roster)));
 }
 
 int swap(const SwapOptions& options) {

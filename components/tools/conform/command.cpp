@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <system_error>
 
 #include "component/data_path.hpp"
+#include "configuration/closest_name.hpp"
+#include "configuration/configuration.hpp"
 #include "configuration/temporary_folder.hpp"
 #include "runtime/host.hpp"
 
@@ -21,7 +25,15 @@ namespace fs = std::filesystem;
 volatile std::sig_atomic_t g_signal = 0;
 void on_signal(int number) { g_signal = number; }
 
-bool is_path(const std::string& name) { return name.find('/') != std::string::npos || name.ends_with(".yaml"); }
+/// As `constrictor run` does: the file with this path; if there is none, the file of the project with this name.
+fs::path named_file(const char* kind, const char* folder, const std::string& name) {
+  std::error_code unreachable;
+  if (fs::is_regular_file(name, unreachable)) return fs::absolute(name);
+  const auto names = data_names(folder);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return data_path(fs::path(folder) / (name + ".yaml"));
+  throw ConfigurationError(fmt::format("{}: found '{}', accepted a file or one of {}{}", kind, name,
+                                       fmt::join(names, ", "), did_you_mean(name, names)));
+}
 
 }  // namespace
 
@@ -31,17 +43,9 @@ void note_signals() {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, on_signal);
 }
 
-fs::path robot_file(const std::string& name) {
-  return is_path(name) ? fs::path(name) : data_path("components/lib/robot/" + name + ".yaml");
-}
-
-fs::path scenario_file(const std::string& name) {
-  return is_path(name) ? fs::absolute(name) : data_path("sim/scenarios/" + name + ".yaml");
-}
-
-fs::path manifest_file(const std::string& name) {
-  return is_path(name) ? fs::absolute(name) : data_path("deploy/" + name + ".yaml");
-}
+fs::path robot_file(const std::string& name) { return named_file("robot", "components/lib/robot", name); }
+fs::path scenario_file(const std::string& name) { return named_file("scenario", "sim/scenarios", name); }
+fs::path manifest_file(const std::string& name) { return named_file("manifest", "deploy", name); }
 
 void print_line(const std::string& line) {
   fmt::print("{}\n", line);

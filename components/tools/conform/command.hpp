@@ -28,11 +28,9 @@ struct Options {
 /// From this call on, SIGINT, SIGTERM and SIGHUP are noted instead of ending the process.
 void note_signals();
 
-/// The robot file with this path or name.
+/// The robot file, scenario file or manifest with this path or name. They throw ConfigurationError if there is none.
 [[nodiscard]] std::filesystem::path robot_file(const std::string& name);
-/// The scenario file with this path or name.
 [[nodiscard]] std::filesystem::path scenario_file(const std::string& name);
-/// The manifest with this path or name.
 [[nodiscard]] std::filesystem::path manifest_file(const std::string& name);
 void print_line(const std::string& line);
 

@@ -114,7 +114,13 @@ TEST_F(LaunchPlanTest, RefusesAConfigurationOfAComponentThatIsNotInTheRoster) {
 
 TEST_F(LaunchPlanTest, RefusesAConfigurationFileThatDoesNotExist) {
   options_.config_files = {"navigation=missing.yaml"};
-  expect_refused(options_, {"configuration of navigation: found no file /", "missing.yaml"});
+  expect_refused(options_, {"--config navigation: found no file /", "missing.yaml"});
+  options_ = {};
+  options_.manifest = write("manifest.yaml",
+                            "plant: physics\nrobot: components/lib/robot/mamba.yaml\n"
+                            "scenario: sim/scenarios/line.yaml\nprocesses:\n"
+                            "  - {components: [physics, control], config: {control: missing.yaml}}\n");
+  expect_refused(options_, {"manifest: config of control: found no file /", "missing.yaml"});
 }
 
 TEST_F(LaunchPlanTest, RefusesConfigurationsThatAreNotNameAndFile) {

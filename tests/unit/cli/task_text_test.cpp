@@ -41,6 +41,15 @@ TEST(TaskNames, ReadsATaskFromOneLineAndNamesTheProblem) {
         "rotate direction=left path=0,0;1,0"}) {
     EXPECT_NE(parse_task(bad, task, parameters, path), "") << bad;
   }
+  for (const auto& [wrong, meant] : {std::pair("folow_line", "follow_line"),
+                                     {"rotate Lft=1", ""},
+                                     {"rotate direction=lft", "left"},
+                                     {"follow_line line-colour=bleu", "blue"},
+                                     {"follow_line line_color=blue", "line_colour"}}) {
+    const std::string problem = parse_task(wrong, task, parameters, path);
+    const std::string hint = *meant ? ", did you mean '" + std::string(meant) + "'?" : "path";
+    EXPECT_TRUE(problem.ends_with(hint)) << problem;
+  }
   EXPECT_EQ(parse_task("follow_path path=0,0;1.5,-0.25;2,0", task, parameters, path), "");
   EXPECT_EQ(path.point_count, 3);
   EXPECT_EQ(path.x_m[1], 1.5);

@@ -95,6 +95,9 @@ TEST_F(TypeEncode, BytesMayBeABinaryValue) {
 
 TEST_F(TypeEncode, RefusalsNameTheFieldWhatWasFoundAndWhatIsAccepted) {
   EXPECT_EQ(refusal("RunControl", R"({"pase": 2})").substr(0, 40), "message: there is no field 'pase'; accep");
+  EXPECT_TRUE(refusal("JointState", R"({"joint_cout": 2})").ends_with(", did you mean 'joint_count'?"));
+  EXPECT_EQ(refusal("Request", R"({"level": "operatr"})"),
+            "level: found \"operatr\", accepted planner, external, operator, did you mean 'operator'?");
   EXPECT_EQ(refusal("Request", R"({"level": 1, "task": "fly"})"),
             "task: found \"fly\", accepted none, follow_line, search_object, track_object, pregrasp, grasp, drop, "
             "rotate, explore, follow_path");

@@ -10,6 +10,7 @@
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/components.hpp"
+#include "configuration/closest_name.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
 #include "runtime/host.hpp"
@@ -101,18 +102,20 @@ int list_nodes(const NodeOptions& options) {
 int show_node(const NodeOptions& options) {
   const DomainView view(options.view);
   Json chosen = Json::array();
+  std::vector<std::string> known;
   for (const auto& node : nodes(view)) {
     const auto names = CLI::detail::split(node["node"].get<std::string>(), ',');
+    known.insert(known.end(), names.begin(), names.end());
     if (node["node"] == options.node || std::to_string(node["pid"].get<std::int64_t>()) == options.node ||
         std::count(names.begin(), names.end(), options.node) > 0) {
       chosen.push_back(node);
     }
   }
   if (chosen.empty()) {
-    std::fprintf(stderr,
-                 "node info: no process in DDS domain %u has the name or pid '%s' or hosts such a component "
-                 "(see `constrictor node list`)\n",
-                 view.domain(), options.node.c_str());
+    fmt::print(stderr,
+               "node info: no process in DDS domain {} has the name or pid '{}' or hosts such a component{} "
+               "(see `constrictor node list`)\n",
+               view.domain(), options.node, did_you_mean(options.node, known));
     return exit_status::kSoftware;
   }
   if (options.view.json) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "configuration/closest_name.hpp"
 #include "configuration/counted.hpp"
 #include "constrictor/hex.hpp"
 #include "constrictor/json.hpp"
@@ -76,11 +77,15 @@ std::optional<Json> part_of(const Json& sample, const std::string& path, std::st
       at = &(*at)[name];
     } else {
       std::string accepted;
-      if (at->is_array())
+      if (at->is_array()) {
         accepted = at->empty() ? "nothing, because the list is empty" : fmt::format("0 to {}", at->size() - 1);
-      else if (!at->is_object()) accepted = "nothing, because a plain value has no parts";
-      else
-        for (const auto& [key, value] : at->items()) accepted += (accepted.empty() ? "" : ", ") + key;
+      } else if (!at->is_object()) {
+        accepted = "nothing, because a plain value has no parts";
+      } else {
+        std::vector<std::string> names;
+        for (const auto& [key, value] : at->items()) names.push_back(key);
+        accepted = fmt::format("{}{}", fmt::join(names, ", "), did_you_mean(name, names));
+      }
       problem = fmt::format("found '{}', accepted {}", name, accepted);
       return std::nullopt;
     }
