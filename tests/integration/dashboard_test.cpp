@@ -117,6 +117,10 @@ TEST_F(DashboardTest, RefusesPagesOfOtherSitesAndNamesThatAreNotItsOwn) {
   EXPECT_EQ(wrong.errors(),
             "dashboard: --port: found '99999', accepted a whole number from 0 to 65535 (see constrictor dashboard "
             "--help)\n");
+  Process nowhere = command({"dashboard", "--address", "foo"});
+  EXPECT_EQ(nowhere.wait(20s), exit_status::kUsage);
+  EXPECT_NE(nowhere.errors().find("--address: found 'foo', accepted an IP address"), std::string::npos)
+      << nowhere.errors();
   Process second = command({"dashboard", "--port", std::to_string(port_)});
   EXPECT_EQ(second.wait(20s), exit_status::kSoftware);
   EXPECT_NE(second.errors().find("choose another one with --port"), std::string::npos) << second.errors();

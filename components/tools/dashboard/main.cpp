@@ -103,7 +103,8 @@ int main(int argc, char** argv) {
   app.add_option(
          "--address", web.address,
          "IP address to listen on; 0.0.0.0 for viewers on other hosts: everybody there may then command the run")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(dashboard::wrong_address);
   app.add_option("--allow-origin", web.origins,
                  "web site whose pages may watch (not command), such as https://app.foxglove.dev; may be repeated")
       ->allow_extra_args(false);

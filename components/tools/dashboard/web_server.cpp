@@ -22,6 +22,12 @@ std::string host_without_port(std::string host) {
 
 }  // namespace
 
+std::string wrong_address(const std::string& text) {
+  ErrorCode error;
+  asio::ip::make_address(text, error);
+  return error ? fmt::format("found '{}', accepted an IP address, such as 127.0.0.1 or 0.0.0.0", text) : "";
+}
+
 WebServer::Impl::Impl(WebOptions given, std::string given_name, std::vector<std::string> names, OnCall call,
                       OnChange change)
     : options(std::move(given)),
@@ -46,9 +52,7 @@ bool WebServer::Impl::knows_host(const std::string& host) const {
 
 void WebServer::Impl::listen() {
   ErrorCode error;
-  const auto address = asio::ip::make_address(options.address, error);
-  if (error) throw std::runtime_error(fmt::format("--address: found '{}', accepted an IP address", options.address));
-  const tcp::endpoint endpoint(address, options.port);
+  const tcp::endpoint endpoint(asio::ip::make_address(options.address), options.port);
   acceptor.open(endpoint.protocol());
   acceptor.set_option(asio::socket_base::reuse_address(true));
   acceptor.bind(endpoint, error);

@@ -13,10 +13,13 @@
 
 namespace constrictor::dashboard {
 
+/// What is wrong with the address of a WebServer; empty if it is an IP address.
+[[nodiscard]] std::string wrong_address(const std::string& text);
+
 struct WebOptions {
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 8765;   ///< 0: any free one
-  std::filesystem::path page;  ///< folder of the files of the page
+  std::string address = "127.0.0.1";  ///< an IP address
+  std::uint16_t port = 8765;          ///< 0: any free one
+  std::filesystem::path page;         ///< folder of the files of the page
   /// Further files of the page that are not files on the disk: content by path, as "/tasks.json".
   std::map<std::string, std::string> made = {};
   std::vector<std::string> origins;  ///< further web sites whose pages may watch, as in the header Origin
