@@ -118,6 +118,13 @@ TEST_F(Evaluate, ARefusedEvaluationLeavesItsFolderForTheCorrectedCommand) {
   EXPECT_TRUE(fs::is_empty(dir_ / "e"));
   Process right = evaluate(40, "e", {"--seeds", "1", "--vary", "noise.camera_sd=0,0.5"});
   ASSERT_EQ(right.wait(60s), exit_status::kOk) << right.errors();
+  // Nothing is left of the folders that were made without --output.
+  fs::create_directory(dir_ / "here");
+  Process unnamed({"/bin/sh", "-c",
+                   "cd " + (dir_ / "here").string() + " && exec " + program("constrictor") +
+                       " evaluate ../40_ticks.yaml --manifest ../toys.yaml --seeds 1 --vary robto:links=1"});
+  EXPECT_EQ(unnamed.wait(30s), exit_status::kConfiguration) << unnamed.errors();
+  EXPECT_TRUE(fs::is_empty(dir_ / "here"));
   // What is there already stays, whatever else is asked of it.
   Process later = evaluate(40, "e", {"--seeds", "1", "--vary", "robto:links=1"});
   EXPECT_EQ(later.wait(30s), exit_status::kUsage) << later.errors();

@@ -54,11 +54,12 @@ void parse_shard(const std::string& text, EvaluationRequest& request) {
   if (!good) throw UsageError(fmt::format("--shard: found '{}', accepted K/N with K from 1 to N, such as 3/16", text));
 }
 
+constexpr const char* kFolders = "evaluations";  // of evaluations without --output
+
 fs::path new_folder(const RunOptions& options) {
   const std::string scenario = make_launch_plan(options).manifest.scenario_file.stem().string();
   const std::time_t now = std::time(nullptr);
-  return make_new_directory(fs::path("evaluations") /
-                            fmt::format("{:%Y%m%d-%H%M%S}_{}", fmt::localtime(now), scenario));
+  return make_new_directory(fs::path(kFolders) / fmt::format("{:%Y%m%d-%H%M%S}_{}", fmt::localtime(now), scenario));
 }
 
 /// Writes the files that can be written, and prints the table. Returns why the other files could not be written.
@@ -108,15 +109,17 @@ bool report_unwritten(const std::string& folder, const std::vector<std::string>&
   return false;
 }
 
-/// Begins the evaluation. A folder that was made for it does not stay if it is refused.
+/// Begins the evaluation. The folders that were made for it do not stay if it is refused.
 std::unique_ptr<Evaluation> begin(EvaluationRequest& request) {
   const bool own_folder = request.folder.empty();
+  const bool first = own_folder && !fs::exists(kFolders);
   if (own_folder) request.folder = new_folder(request.run);
   try {
     return std::make_unique<Evaluation>(request);
   } catch (...) {
     std::error_code ignored;
     if (own_folder) fs::remove(request.folder, ignored);
+    if (first) fs::remove(kFolders, ignored);
     throw;
   }
 }
