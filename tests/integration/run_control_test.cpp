@@ -251,10 +251,11 @@ TEST_F(RunControl, TheErrorNamesAnUnknownSubcommand) {
 
 TEST_F(RunControl, EveryHelpTextListsExamplesExitStatusesAndEnvironment) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
-           {"run"},          {"status"}, {"doctor"}, {"end"},           {"host"},         {"pause"},
-           {"resume"},       {"step"},   {"pace"},   {"reset"},         {"stop"},         {"clear-stop"},
-           {"release"},      {"teleop"}, {"task"},   {"task", "start"}, {"task", "wait"}, {"task", "cancel"},
-           {"task", "list"}, {"topic"},  {"node"},   {"param"},         {"diff"},         {"completion"}}) {
+           {"run"},           {"status"},       {"doctor"},         {"end"},          {"host"},
+           {"pause"},         {"resume"},       {"step"},           {"pace"},         {"reset"},
+           {"stop"},          {"clear-stop"},   {"release"},        {"teleop"},       {"task"},
+           {"task", "start"}, {"task", "wait"}, {"task", "cancel"}, {"task", "list"}, {"topic"},
+           {"node"},          {"param"},        {"diff"},           {"completion"},   {"topic", "delay"}}) {
     std::vector<std::string> arguments = words;
     arguments.emplace_back("--help");
     EXPECT_EQ(command(arguments), exit_status::kOk);

@@ -138,7 +138,7 @@ TEST_F(Introspection, PublishesOnATopicOfAnotherProgram) {
   const DomainClaim claim;
   const std::string number = std::to_string(claim.domain());
   EXPECT_EQ(command({"topic", "pub", "posture", "{}", "--run", number}), 70);
-  EXPECT_NE(output_.find("a new topic needs the name of its type"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("a new topic needs the name of its type (--type TYPE)"), std::string::npos) << output_;
   EXPECT_EQ(command({"topic", "pub", "posture", "{}", "--type", "JointState", "--wait", "0.3", "--run", number}), 1);
   EXPECT_NE(output_.find("no reader of 'posture'"), std::string::npos) << output_;
   const dds::Domain domain(claim.domain());

@@ -114,8 +114,9 @@ TopicPublisher::TopicPublisher(std::int32_t participant, std::uint32_t domain, s
   if (type_.empty()) {
     for (const auto& info : topics::kInfos) names.emplace_back(info.name);
     for (const auto& info : barrier_topics::kInfos) names.emplace_back(info.name);
-    throw CommandError(fmt::format("no topic '{}' in DDS domain {}{}; a new topic needs the name of its type", topic_,
-                                   domain, did_you_mean(topic_, names)));
+    throw CommandError(
+        fmt::format("no topic '{}' in DDS domain {}{}; a new topic needs the name of its type (--type TYPE)", topic_,
+                    domain, did_you_mean(topic_, names)));
   }
   parts_->keyed = known && known->type == type_ ? known->keyed : keyed(type_);
   if (known && known->type == type_) parts_->tree = dds::TypeTree::find(participant, *known, 2s);

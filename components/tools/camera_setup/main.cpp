@@ -51,6 +51,25 @@ void add_board(CLI::App& sub, Options& options) {
       ->check(number(0.01, 100.0, "pixels"));
 }
 
+constexpr const char* kShow = "  constrictor camera show --source /dev/video0 --out picture.png";
+constexpr const char* kCalibrate =
+    "  constrictor camera calibrate --source http://10.0.0.7:8080/stream --square 0.024 --out camera.yaml";
+constexpr const char* kMount =
+    "  constrictor camera mount --source /dev/video0 --calibration camera.yaml --board 6x5 --square 0.04 --at 0.36,0";
+constexpr const char* kColours =
+    "  constrictor camera colours --source picture.png --sample blue=150,200,20,10 --sample ground=20,200,40,20 --out "
+    "colours.yaml";
+
+/// The last part of a --help.
+std::string footer(const std::string& examples) {
+  return fmt::format(
+      "EXAMPLES\n{}\n\n"
+      "EXIT STATUS\n  0 done; 1 it did not succeed, with what to do; 64 wrong usage; 70 the source cannot be read; 78 "
+      "a "
+      "file is wrong;\n  130 Ctrl-C",
+      examples);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -60,26 +79,27 @@ int main(int argc, char** argv) {
                "constrictor camera"};
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, int (*run)(const Options&)) {
+  const auto add = [&](const char* name, const char* what, const char* example, int (*run)(const Options&)) {
     CLI::App* sub = app.add_subcommand(name, what);
     sub->callback([&chosen, run] { chosen = run; });
     add_source(*sub, options);
+    sub->footer(footer(example));
     return sub;
   };
-  CLI::App* sub = add("show", "try a source: size, rate, brightness; save a picture", show);
+  CLI::App* sub = add("show", "try a source: size, rate, brightness; save a picture", kShow, show);
   sub->add_option("--out", options.out, "file for the last picture: .png, .jpg, .bmp, .tif or .webp")
       ->check(wrong_picture_name);
-  sub = add("calibrate", "find the model of the lens with a chessboard", calibrate);
+  sub = add("calibrate", "find the model of the lens with a chessboard", kCalibrate, calibrate);
   add_board(*sub, options);
   sub->add_option("--views", options.views, "how many views of a live source are collected")
       ->capture_default_str()
       ->check(whole_number(6, 200));
   sub->add_option("--out", options.out, "calibration file (YAML)")->required();
-  sub = add("mount", "find the place of the camera in the head with a chessboard on the ground", mount);
+  sub = add("mount", "find the place of the camera in the head with a chessboard on the ground", kMount, mount);
   add_board(*sub, options);
   sub->add_option("--calibration", options.calibration, "calibration file of the lens")
       ->required()
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   sub->add_option("--at", options.at_m,
                   "[m] X,Y of the middle of the inner corners: ahead of the head's centre, and to its left")
       ->required()
@@ -90,14 +110,14 @@ int main(int argc, char** argv) {
                   "[degrees] 0: the board's rows lie across the robot; positive: turned to the left")
       ->capture_default_str()
       ->check(number(-180.0, 180.0, "degrees"));
-  sub->add_option("--robot", options.robot, "robot file")->check(CLI::ExistingFile);
+  sub->add_option("--robot", options.robot, "robot file")->check(existing_file());
   sub->add_option("--within", options.within_s, "[s] time in which a live source must show the board")
       ->capture_default_str()
       ->check(number(1.0, 3600.0, "s"));
   sub->add_flag("--accept-mount", options.accept_mount,
                 "write also a mount that is far from the head, or from the mount of the robot file");
   sub->add_option("--out", options.out, "calibration file with the mount (default: that of --calibration)");
-  sub = add("colours", "teach colours from a picture", colours);
+  sub = add("colours", "teach colours from a picture", kColours, colours);
   sub->add_option("--sample", options.samples,
                   "COLOUR=X,Y,WIDTH,HEIGHT: a box in the picture that shows this colour only (" +
                       listed(constants::kColour, msg::kColourUnknown + 1) +
@@ -105,20 +125,9 @@ int main(int argc, char** argv) {
       ->required()
       ->check(wrong_sample);
   sub->add_option("--calibration", options.calibration, "calibration file: the boxes are then in the rectified picture")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   sub->add_option("--out", options.out, "configuration of perception (YAML)")->required();
-  app.footer(
-      "EXAMPLES\n"
-      "  constrictor camera show --source /dev/video0 --out picture.png\n"
-      "  constrictor camera calibrate --source http://10.0.0.7:8080/stream --square 0.024 --out camera.yaml\n"
-      "  constrictor camera mount --source /dev/video0 --calibration camera.yaml --board 6x5 --square 0.04 --at "
-      "0.36,0\n"
-      "  constrictor camera colours --source picture.png --sample blue=150,200,20,10 --sample ground=20,200,40,20 "
-      "--out "
-      "colours.yaml\n\n"
-      "EXIT STATUS\n  0 done; 1 it did not succeed, with what to do; 64 wrong usage; 70 the source cannot be read; 78 "
-      "a "
-      "file is wrong;\n  130 Ctrl-C");
+  app.footer(footer(fmt::format("{}\n{}\n{}\n{}", kShow, kCalibrate, kMount, kColours)));
   struct sigaction action {};
   action.sa_handler = [](int number) { g_signal = number; };
   ::sigaction(SIGTERM, &action, nullptr);

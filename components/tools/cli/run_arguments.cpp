@@ -113,7 +113,7 @@ void add_run_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Acti
       "  constrictor run --group physics,camera --group navigation,control\n"
       "  constrictor run --manifest manual                       # no planner: drive with `constrictor teleop`\n"
       "  constrictor run --manifest my_hosts.yaml                # on several hosts, see deploy/README.md\n"
-      "  constrictor run --config planner=components/planner/planner.yaml\n\n"
+      "  constrictor run --config planner=mine.yaml\n\n"
       "EXIT STATUS\n"
       "  0 the mission succeeded; 1 it did not; 64 wrong usage; 70 a process failed; 75 a process waited too long for\n"
       "  another one; 76 a process was refused; 78 wrong configuration; 129 its terminal was closed; 130 ended by\n"
@@ -150,7 +150,7 @@ void add_check_app(CLI::App& app, const std::shared_ptr<RunOptions>& options, Ac
       "Every component reads its own files, as it does at the start of a run. `constrictor run` makes the same check\n"
       "before it starts anything.",
       {"constrictor check", "constrictor check line --robot serpens --seed 7",
-       "constrictor check --config planner=components/planner/planner.yaml"},
+       "constrictor check --config planner=mine.yaml"},
       "0 no errors; 64 wrong usage; 78 wrong configuration, with file, line, key, what was found and what is accepted",
       kDataEnvironment));
 }

@@ -40,6 +40,14 @@ TEST(CameraCommand, AMountWithoutABoardInViewSaysWhatItSeesAndEnds) {
   EXPECT_EQ(stopped.wait(30s), 128 + SIGINT) << stopped.errors();
 }
 
+TEST(CameraCommand, EachSubcommandShowsAnExampleOfItself) {
+  for (const std::string name : {"show", "calibrate", "mount", "colours"}) {
+    Process help({program("camera_setup"), name, "--help"});
+    EXPECT_EQ(help.wait(20s), 0) << help.errors();
+    EXPECT_NE(help.output().find("EXAMPLES\n  constrictor camera " + name + " --"), std::string::npos) << help.output();
+  }
+}
+
 TEST(CameraCommand, AFileThatCannotBeWrittenIsRefusedBeforeTheSourceIsOpened) {
   const TemporaryFolder folder;
   const std::string file = (folder.path() / "camera.yaml").string();

@@ -220,7 +220,8 @@ void add_topic(CLI::App& app, Action& action) {
       {"constrictor topic list", "constrictor topic info joint_state", "constrictor topic find CameraImage",
        "constrictor topic echo task/event", "constrictor topic echo guidance/pose --count 1 --json",
        "constrictor topic echo perception/objects --filter 'blobs.*.colour == green' --precision 2",
-       "constrictor topic hz joint_state camera/image --for 5", "constrictor topic bw camera/image --for 5"},
+       "constrictor topic hz joint_state camera/image --for 5", "constrictor topic bw camera/image --for 5",
+       "constrictor topic delay camera/image --for 5"},
       "0 done; 1 no sample arrived in time, or no topic found; 64 wrong usage; 70 no such topic or run",
       kDomainEnvironment));
   const auto add = [&](const char* name, const char* what, std::function<int(const TopicOptions&)> run) {
@@ -253,12 +254,14 @@ void add_topic(CLI::App& app, Action& action) {
     const char* what;
     Measure run;
     bool several;
+    const char* example;
   };
-  for (const Row& row :
-       {Row{"hz", "measure how often samples arrive, in wall time and in the robot's time", hz_command, true},
-        Row{"bw", "measure how many bytes arrive, in wall time and in the robot's time", bw_command, true},
-        Row{"delay", "measure how old samples are when they arrive, by the clocks of their writers", delay_command,
-            false}}) {
+  for (const Row& row : {Row{"hz", "measure how often samples arrive, in wall time and in the robot's time", hz_command,
+                             true, "constrictor topic hz joint_state camera/image --for 5"},
+                         Row{"bw", "measure how many bytes arrive, in wall time and in the robot's time", bw_command,
+                             true, "constrictor topic bw camera/image --for 5"},
+                         Row{"delay", "measure how old samples are when they arrive, by the clocks of their writers",
+                             delay_command, false, "constrictor topic delay camera/image --for 5"}}) {
     auto* meter_app = add(row.name, row.what, [run = row.run](const TopicOptions& chosen) {
       WatchOptions watch = chosen.watch;
       if (watch.topics.empty()) watch.topics = {chosen.topic};
@@ -270,6 +273,9 @@ void add_topic(CLI::App& app, Action& action) {
     add_timeout(*meter_app, *options);
     meter_app->add_option("--for", options->watch.for_s, "[s] end after this time (default: until Ctrl-C)")
         ->check(number(1e-3, 1e6, "s"));
+    meter_app->footer(help_footer("", {row.example},
+                                  "0 done; 1 no sample arrived in time; 64 wrong usage; 70 no such topic or run",
+                                  kDomainEnvironment));
   }
   auto* pub_app = add("pub", "publish a message on a topic, once or at a rate",
                       [](const TopicOptions& chosen) { return pub_command(chosen.view, chosen.pub); });

@@ -196,7 +196,7 @@ void add_pub_options(CLI::App& app, ViewOptions& view, PubOptions& pub) {
       "its members and are refused while\na run is in the domain.",
       {"constrictor topic pub request/v2 '{level: operator, kind: motion, motion: stand}'",
        "constrictor topic pub run_control/v2 '{\"command\": \"pause\"}'",
-       "constrictor topic pub rt/cmd_vel '{linear: {x: 0.3}}' --rate 10 --for 2",
+       "constrictor topic pub rt/cmd_vel '{linear: {x: 0.3}}' --rate 10 --for 2   # beside ros_bridge",
        "constrictor topic pub joint_state '{joint_count: 2}' --check --run 9"},
       "0 published, or --check found no fault; 1 the topic has no reader; 64 the message does not fit the type;\n"
       "  70 no such topic, or it belongs to a run",
