@@ -58,7 +58,7 @@ tests=(
   # runs on several hosts, made of network namespaces
   openssh-server openssh-client iproute2
   # another vendor's DDS
-  libfastrtps-dev libfastcdr-dev fastddsgen fastdds-tools
+  libfastrtps-dev libfastcdr-dev fastddsgen
   # definitions of ROS messages, with which those of the bridge to ROS 2 are compared (0.4 MB in all)
   ros-std-msgs ros-geometry-msgs ros-sensor-msgs ros-nav-msgs ros-tf2-msgs ros-rosgraph-msgs ros-visualization-msgs
   ros-diagnostic-msgs
@@ -69,8 +69,8 @@ tests=(
 )
 # The official reader of recordings is a package of npm. A Node.js from elsewhere brings its own npm.
 command -v npm >/dev/null || tests+=(nodejs npm)
-tools=(clang-format clang-tidy doxygen graphviz shellcheck)
-bench=(libmujoco-dev cyclonedds-tools)
+tools=(clang-format clang-tidy doxygen shellcheck)
+bench=(libmujoco-dev)
 # for the long tests: the page of the dashboard
 browser=(chromium)
 # evaluations on several machines
