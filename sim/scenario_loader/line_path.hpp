@@ -1,8 +1,10 @@
 // A line on the ground as a chain of arcs, and the frames at both ends.
 #pragma once
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 #include <vector>
+
+#include "robot/planar.hpp"
 
 namespace constrictor {
 
@@ -12,27 +14,16 @@ struct LineSegment {
   double curvature_1_m = 0.0;
 };
 
-/// A position and a direction on the ground, in W.
-struct PlanarFrame {
-  Eigen::Vector2d origin_m{0.0, 0.0};
-  double yaw_rad = 0.0;
-
-  /// A point given as (ahead, left) in W.
-  [[nodiscard]] Eigen::Vector2d point(const Eigen::Vector2d& p) const {
-    return origin_m + Eigen::Rotation2Dd(yaw_rad) * p;
-  }
-};
-
 struct LinePath {
-  PlanarFrame begin;
-  PlanarFrame end;                        ///< frame at the end of the line; its x axis points away from the line
+  PlanarPose begin;                       ///< frame in W
+  PlanarPose end;                         ///< frame in W at the end of the line; its x axis points away from the line
   std::vector<Eigen::Vector2d> points_m;  ///< in W, at most `most_points`
 };
 
 inline constexpr std::size_t kMostLinePoints = 512;  ///< size of the arrays in SceneDescription (simulation.idl)
 
 /// Joins the segments with continuous heading. The points are 0.02 m apart, or further on long lines.
-[[nodiscard]] LinePath make_line_path(const PlanarFrame& begin, const std::vector<LineSegment>& segments,
+[[nodiscard]] LinePath make_line_path(const PlanarPose& begin, const std::vector<LineSegment>& segments,
                                       std::size_t most_points);
 
 }  // namespace constrictor

@@ -101,7 +101,8 @@ Scenario draw_scene(const RandomScene& ranges, const Mission& mission, Scenario 
     ScenarioObject object = draw_object(ranges, colour, random);
     const double side = random.coin() ? 1.0 : -1.0;
     const double along_m = ahead_m + random.uniform(-kJitter_m, kJitter_m);
-    object.position_m = path.end.point({along_m, side * (kObjectBeside_m + random.uniform(-kJitter_m, kJitter_m))});
+    object.position_m = path.end.p + turned({along_m, side * (kObjectBeside_m + random.uniform(-kJitter_m, kJitter_m))},
+                                            path.end.yaw_rad);
     object.yaw_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
     scene.objects.push_back(object);
     ahead_m += kObjectSpacing_m;
@@ -113,7 +114,7 @@ Scenario draw_scene(const RandomScene& ranges, const Mission& mission, Scenario 
     const double radius_m = draw(ranges.zone_radius_m, random);
     const double behind_m = kZoneBehind_m + random.uniform(-kJitter_m, kJitter_m);
     const double beside_m = radius_m + random.uniform(0.1, 0.2);
-    scene.zones.push_back({colour, path.begin.point({-behind_m, side * beside_m}), radius_m});
+    scene.zones.push_back({colour, path.begin.p + turned({-behind_m, side * beside_m}, path.begin.yaw_rad), radius_m});
     side = -side;
   }
   return scene;

@@ -83,7 +83,7 @@ struct ScenarioLight {
 struct Scenario {
   std::string name;
   std::uint64_t seed = 0;
-  PlanarFrame line_begin;                  ///< where the line begins
+  PlanarPose line_begin;                   ///< where the line begins
   std::vector<LineSegment> line_segments;  ///< of which the line is made, from the zones to the objects; empty: no line
   std::vector<Eigen::Vector2d> line_m;     ///< its points
   double line_width_m = 0.05;

@@ -60,7 +60,7 @@ void read_line(Configuration line, ScenarioDraft& draft) {
   draft.fixed.line_colour = read_colour(line);
   draft.fixed.line_width_m = line.number("width_m", {0.005, 0.5});
   const std::vector<double> begin = line.numbers("begin_m", {-kFar_m, kFar_m}, 2, 2);
-  draft.fixed.line_begin.origin_m = {begin[0], begin[1]};
+  draft.fixed.line_begin.p = {begin[0], begin[1]};
   draft.fixed.line_begin.yaw_rad = line.number("begin_yaw_rad", {-2.0 * std::numbers::pi, 2.0 * std::numbers::pi}, 0.0);
   for (Configuration& segment : line.list("segments")) {
     draft.fixed.line_segments.push_back(

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "component/random.hpp"
@@ -14,7 +15,7 @@ namespace {
 constexpr int kMostDraws = 200;
 
 /// The direction of the light, tilted about the x axis and turned about the vertical axis by random angles.
-Eigen::Vector3d turned(const Eigen::Vector3d& direction, double by_rad, Random& random) {
+Eigen::Vector3d tilted(const Eigen::Vector3d& direction, double by_rad, Random& random) {
   const Eigen::AngleAxisd tilt(random.uniform(-by_rad, by_rad), Eigen::Vector3d::UnitX());
   const Eigen::AngleAxisd turn(random.uniform(-by_rad, by_rad) * 3.0, Eigen::Vector3d::UnitZ());
   Eigen::Vector3d result = (turn * tilt * direction).normalized();
@@ -40,10 +41,10 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
   const LinePath path = make_line_path(scene.line_begin, scene.line_segments, kMostLinePoints);
   scene.line_m = path.points_m;
   const auto resolve = [&](const Placement& placement, const Eigen::Vector2d& position_m) {
-    const PlanarFrame frame = placement.frame == "line_begin" ? path.begin
-                              : placement.frame == "line_end" ? path.end
-                                                              : PlanarFrame{};
-    return PlanarFrame{frame.point(position_m), frame.yaw_rad + placement.yaw_rad};
+    const PlanarPose frame = placement.frame == "line_begin" ? path.begin
+                             : placement.frame == "line_end" ? path.end
+                                                             : PlanarPose{};
+    return PlanarPose{frame.p + turned(position_m, frame.yaw_rad), frame.yaw_rad + placement.yaw_rad};
   };
   const auto jitter = [](Random& random, double by_m) {
     const double x = random.uniform(-by_m, by_m);
@@ -56,8 +57,8 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     Eigen::Vector2d at = draft.objects[i].position_m;
     if (vary.object_sides && objects.coin()) at.y() = -at.y();
-    const PlanarFrame pose = resolve(draft.objects[i], at + jitter(objects, vary.object_position_m));
-    scene.objects[i].position_m = pose.origin_m;
+    const PlanarPose pose = resolve(draft.objects[i], at + jitter(objects, vary.object_position_m));
+    scene.objects[i].position_m = pose.p;
     scene.objects[i].yaw_rad = pose.yaw_rad;
     scene.objects[i].size_m.head<2>() *= objects.factor(vary.radius);
     scene.objects[i].size_m.z() *= heights.factor(vary.height);
@@ -68,16 +69,16 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
   for (std::size_t i = 0; i < scene.zones.size(); ++i) {
     Eigen::Vector2d at = draft.zones[i].position_m;
     at.y() *= zone_side;
-    scene.zones[i].position_m = resolve(draft.zones[i], at + jitter(zones, vary.zone_position_m)).origin_m;
+    scene.zones[i].position_m = resolve(draft.zones[i], at + jitter(zones, vary.zone_position_m)).p;
   }
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
-    const PlanarFrame pose = resolve(draft.obstacles[i], draft.obstacles[i].position_m);
-    scene.obstacles[i].position_m = pose.origin_m;
+    const PlanarPose pose = resolve(draft.obstacles[i], draft.obstacles[i].position_m);
+    scene.obstacles[i].position_m = pose.p;
     scene.obstacles[i].yaw_rad = pose.yaw_rad;
   }
   Random start = stream("start");
-  const PlanarFrame pose = resolve(draft.start, draft.start.position_m + jitter(start, vary.start_position_m));
-  scene.start_m = pose.origin_m;
+  const PlanarPose pose = resolve(draft.start, draft.start.position_m + jitter(start, vary.start_position_m));
+  scene.start_m = pose.p;
   scene.start_yaw_rad = pose.yaw_rad + start.uniform(-vary.start_yaw_rad, vary.start_yaw_rad);
 
   Random friction = stream("friction");
@@ -88,7 +89,7 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
   Random light = stream("light");
   scene.light.intensity *= light.factor(vary.light_intensity);
   scene.light.ambient = std::min(1.0, scene.light.ambient * light.factor(vary.light_intensity));
-  scene.light.direction = turned(scene.light.direction.normalized(), vary.light_direction_rad, light);
+  scene.light.direction = tilted(scene.light.direction.normalized(), vary.light_direction_rad, light);
   Random camera = stream("camera");
   scene.camera_noise_sd *= camera.factor(vary.camera_noise);
   return scene;

@@ -70,7 +70,7 @@ void put_line(Emitter& out, const Scenario& scene) {
   out << YAML::Newline << YAML::Newline << YAML::Key << "line" << YAML::Value << YAML::BeginMap;
   put_colour(out, scene.line_colour);
   put(out, "width_m", scene.line_width_m);
-  put(out, "begin_m", scene.line_begin.origin_m);
+  put(out, "begin_m", scene.line_begin.p);
   put_angle(out, "begin_yaw_rad", scene.line_begin.yaw_rad);
   out << YAML::Key << "segments" << YAML::Value << YAML::BeginSeq;
   for (const LineSegment& segment : scene.line_segments) {

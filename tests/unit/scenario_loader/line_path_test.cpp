@@ -17,7 +17,7 @@ double length_of(const std::vector<Eigen::Vector2d>& points) {
 TEST(LinePath, AQuarterCircleEndsAtItsRadius) {
   const double radius = 1.3;
   const LinePath path = make_line_path({}, {{radius * std::numbers::pi / 2, 1 / radius}}, 512);
-  EXPECT_NEAR((path.end.origin_m - Eigen::Vector2d(radius, radius)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((path.end.p - Eigen::Vector2d(radius, radius)).norm(), 0.0, 1e-12);
   EXPECT_NEAR(path.end.yaw_rad, std::numbers::pi / 2, 1e-12);
   for (const Eigen::Vector2d& point : path.points_m) {
     EXPECT_NEAR((point - Eigen::Vector2d(0, radius)).norm(), radius, 1e-12);
@@ -40,8 +40,8 @@ TEST(LinePath, HasAtMostAsManyPointsAsTheMessage) {
 }
 
 TEST(LinePath, FramesPlacePointsAheadAndLeft) {
-  const PlanarFrame frame{{1, 1}, std::numbers::pi / 2};
-  EXPECT_NEAR((frame.point({2, 0.5}) - Eigen::Vector2d(0.5, 3)).norm(), 0.0, 1e-12);
+  const PlanarPose frame{{1, 1}, std::numbers::pi / 2};
+  EXPECT_NEAR(((frame.p + turned({2, 0.5}, frame.yaw_rad)) - Eigen::Vector2d(0.5, 3)).norm(), 0.0, 1e-12);
 }
 
 }  // namespace
