@@ -21,9 +21,9 @@ constexpr int kMostStrangeHellos = 16;  // of components outside the roster, in 
 
 /// [byte] about what a sample holds in memory.
 std::size_t size_of(const TopicInfo& topic, const Sample& sample) {
-  const bool image = topic.type == Description<msg::CameraImage>::kName;
+  const bool is_image = topic.type == Description<msg::CameraImage>::kName;
   return topic_ops(topic.id).max_size +
-         (image ? static_cast<const msg::CameraImage*>(sample.message.get())->data._length : 0);
+         (is_image ? static_cast<const msg::CameraImage*>(sample.message.get())->data._length : 0);
 }
 
 bool is_in(const std::vector<std::string>& roster, const char* component) {

@@ -214,14 +214,14 @@ void RunRecorder::add(const TopicInfo& topic, const Sample& sample) {
 
 void RunRecorder::add(std::uint8_t topic, const std::string& canonical) {
   const TopicInfo& info = topics::kInfos.at(topic);
-  const bool image = info.type == kImage;
-  if (!sink_ || (image && context_.options.recording.images == RecordedImages::kOff)) return;
+  const bool is_image = info.type == kImage;
+  if (!sink_ || (is_image && context_.options.recording.images == RecordedImages::kOff)) return;
   const auto bytes = std::as_bytes(std::span(canonical));
   const auto header_at = topic_ops(topic).header_at(bytes);
   if (!header_at) return;
   const msg::Header header = parse_header(bytes.subspan(*header_at).first<kHeaderSize>());
   const auto log_time = static_cast<std::uint64_t>(base_ns_ + header.time_ns);
-  const bool without_pixels = image && context_.options.recording.images == RecordedImages::kRecompute;
+  const bool without_pixels = is_image && context_.options.recording.images == RecordedImages::kRecompute;
   const auto convert = without_pixels ? codecs_[topic]->to_cdr_without_octets : codecs_[topic]->to_cdr;
   cdr_.clear();
   if (!convert(mcap::bytes_of(canonical), cdr_)) return;
