@@ -14,17 +14,11 @@
 #include "component/data_path.hpp"
 #include "configuration/configuration.hpp"
 #include "support/eventually.hpp"
+#include "support/scripted_members.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::testing {
 namespace {
-
-class Ticker final : public Plant {
- public:
-  void sample(const Tick&) override {}
-  void step(const Tick&) override {}
-  [[nodiscard]] std::int64_t period_ns() const override { return 20'000'000; }
-};
 
 struct Image {
   std::int64_t tick, exposed;
@@ -93,10 +87,9 @@ class VideoCaptureTest : public ::testing::Test {
     setup.output_dir = folder_.path();
     setup.log = Log("camera", folder_.path() / "log");
     const video::OpenVideo open = [camera = camera_] { return std::make_unique<HandFed::Input>(camera); };
-    const ComponentFactory plant{"physics",
-                                 [](Wiring&, const constrictor::Setup&) { return std::make_unique<Ticker>(); }};
     run_ = std::make_unique<LocalRun>(
-        std::vector<ComponentFactory>{plant, live ? make_video_capture_factory(open) : make_video_capture_factory()},
+        std::vector<ComponentFactory>{testing::idle_plant(),
+                                      live ? make_video_capture_factory(open) : make_video_capture_factory()},
         setup, std::map<std::string, std::filesystem::path>{{"camera", folder_.path() / "camera.yaml"}});
     run_->subscribe<msg::CameraImage>(topics::kCameraImage, [this](const msg::CameraImage& m) {
       ASSERT_EQ(m.data._length, static_cast<std::uint32_t>(m.width * m.height * 3));
