@@ -1,7 +1,6 @@
 #include "runtime/domain_tap.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 
 #include "constrictor/descriptors.hpp"
@@ -16,7 +15,7 @@ constexpr std::size_t kMostWaiting = std::size_t{16} << 20;  // [byte] of sample
 
 }  // namespace
 
-DomainTap::DomainTap(std::uint32_t domain, const std::string& identity, dds::TopicTap::Wanted wanted)
+DomainTap::DomainTap(std::uint32_t domain, const std::string& identity, dds::TopicTap::Wanted wanted, const Log& log)
     : participant_(dds::create_participant(domain, dds::Reach::kLoopback, identity)), tap_(participant_.get(), wanted) {
   // Clients write these, and some of them end as soon as they have been answered.
   const auto expect = [&](const char* topic, const dds_topic_descriptor_t& type) {
@@ -26,11 +25,11 @@ DomainTap::DomainTap(std::uint32_t domain, const std::string& identity, dds::Top
 #define CONSTRICTOR_UNCOUNTED_TOPIC(constant, Type, name, ...) expect(name, dds::descriptor<msg::Type>());
 #include "constrictor/topic_table.def"
 #undef CONSTRICTOR_UNCOUNTED_TOPIC
-  thread_ = std::thread([this] {
+  thread_ = std::thread([this, log] {
     try {
       loop();
     } catch (const std::exception& error) {  // the run goes on; what has arrived is still recorded
-      std::fprintf(stderr, "recording: no more topics of the domain: %s\n", error.what());
+      log.error("topics of clients and other programs are no longer recorded: {}", error.what());
     }
   });
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cyclone/topic_tap.hpp"
+#include "log/log.hpp"
 #include "runtime/recording_sink.hpp"
 
 namespace constrictor {
@@ -23,8 +24,9 @@ class DomainTap {
     std::uint64_t source_time_ns;  ///< wall time
     std::string cdr;
   };
-  /// Reads the topics for which `wanted` returns true, with a participant of its own. Throws dds::Error.
-  DomainTap(std::uint32_t domain, const std::string& identity, dds::TopicTap::Wanted wanted);
+  /// Reads the topics for which `wanted` returns true, with a participant of its own. Throws dds::Error. `log` receives
+  /// the error that ends the reading.
+  DomainTap(std::uint32_t domain, const std::string& identity, dds::TopicTap::Wanted wanted, const Log& log);
   ~DomainTap();
   DomainTap(const DomainTap&) = delete;
   DomainTap& operator=(const DomainTap&) = delete;

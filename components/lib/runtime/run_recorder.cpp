@@ -68,7 +68,7 @@ RunRecorder::RunRecorder(const HostContext& context, std::optional<RecordingPosi
   std::string identity = context.identity;
   std::replace(identity.begin(), identity.end(), ',', '+');
   try {
-    tap_ = std::make_unique<DomainTap>(context.options.domain, identity, arrives_over_dds);
+    tap_ = std::make_unique<DomainTap>(context.options.domain, identity, arrives_over_dds, context_.log);
   } catch (const std::exception& error) {
     context_.log.warning("topics of clients and other programs are not recorded: {}", error.what());
   }

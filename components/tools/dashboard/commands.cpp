@@ -43,7 +43,7 @@ std::vector<std::string> Commands::services() const {
   return all;
 }
 
-Commands::Commands(const RunNote& run)
+Commands::Commands(const RunNote& run, const Log& log)
     : driver_(run.domain, ending_),
       run_(driver_.participant(), run.domain, 10s, [this] { return ending_.load(); }),
       stops_(driver_.participant(), run.domain, operator_client("dash-stop", ending_)),
@@ -54,7 +54,7 @@ Commands::Commands(const RunNote& run)
       stop_lane_(answers_, [this](const WebServer::Call& call) { return stop(call); }),
       driver_lane_(
           answers_, [this](const WebServer::Call& call) { return driver_.obey(call); }, "drive",
-          [this] { driver_.watch(); }),
+          [this] { driver_.watch(); }, log),
       parameter_lane_(answers_, [this](const WebServer::Call& call) { return parameter(call); }) {}
 
 Commands::~Commands() { ending_ = true; }

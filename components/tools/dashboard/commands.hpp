@@ -28,7 +28,8 @@ inline constexpr const char* kParameterList = "param_list";
 /// those of Driver. The run accepts or refuses them like the commands of `constrictor`.
 class Commands : public Controls {
  public:
-  explicit Commands(const RunNote& run);
+  /// `log`: of the program, for errors that answer no call.
+  Commands(const RunNote& run, const Log& log);
   ~Commands() override;
 
   [[nodiscard]] std::vector<std::string> services() const override;

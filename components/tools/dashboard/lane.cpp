@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -32,11 +31,12 @@ void Answers::deliver() {
   for (const auto& deliver : due) deliver();
 }
 
-Lane::Lane(Answers& answers, Do what, std::string newest_only, std::function<void()> each_turn)
+Lane::Lane(Answers& answers, Do what, std::string newest_only, std::function<void()> each_turn, Log log)
     : answers_(answers),
       do_(std::move(what)),
       newest_only_(std::move(newest_only)),
       each_turn_(std::move(each_turn)),
+      log_(std::move(log)),
       thread_([this] { work(); }) {}
 
 Lane::~Lane() {
@@ -93,7 +93,7 @@ void Lane::work() {
     try {
       if (each_turn_) each_turn_();
     } catch (const std::exception& error) {
-      if (said != error.what()) std::fprintf(stderr, "dashboard: %s\n", error.what());
+      if (said != error.what()) log_.error("{}", error.what());
       said = error.what();
     }
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dashboard/web_server.hpp"
+#include "log/log.hpp"
 
 namespace constrictor::dashboard {
 
@@ -31,8 +32,8 @@ class Lane {
   /// Carries out a call and returns its answer; throws std::exception with the reason of a refusal.
   using Do = std::function<std::string(const WebServer::Call&)>;
   /// Calls of the service `newest_only` take the place of a waiting call of the same kind, which is answered at once.
-  /// `each_turn` is called between calls, at least every 50 ms; empty: never.
-  Lane(Answers& answers, Do what, std::string newest_only = {}, std::function<void()> each_turn = {});
+  /// `each_turn` is called between calls, at least every 50 ms; empty: never. `log` receives what it throws.
+  Lane(Answers& answers, Do what, std::string newest_only = {}, std::function<void()> each_turn = {}, Log log = {});
   ~Lane();
   Lane(const Lane&) = delete;
   Lane& operator=(const Lane&) = delete;
@@ -46,6 +47,7 @@ class Lane {
   Do do_;
   std::string newest_only_;
   std::function<void()> each_turn_;
+  Log log_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<WebServer::Call> waiting_;

@@ -18,6 +18,7 @@
 #include "dashboard/commands.hpp"
 #include "dashboard/dashboard.hpp"
 #include "dashboard/replay_controls.hpp"
+#include "log/log.hpp"
 #include "runtime/git_revision.hpp"
 #include "runtime/host.hpp"
 #include "runtime/version_text.hpp"
@@ -44,10 +45,11 @@ struct Shown {
 
 /// The run or the replay in `domain`; without a domain the only run on this host, or else the only replay.
 Shown find(std::optional<std::uint32_t> domain) {
+  const Log log("dashboard");
   const auto replays = cli::live_replays();
   const bool wanted = domain && std::find(replays.begin(), replays.end(), *domain) != replays.end();
   if (wanted || (!domain && replays.size() == 1 && live_runs().empty())) {
-    auto controls = std::make_unique<dashboard::ReplayControls>(domain.value_or(replays.front()));
+    auto controls = std::make_unique<dashboard::ReplayControls>(domain.value_or(replays.front()), log);
     const std::string name = fmt::format("replay {} of {}", domain.value_or(replays.front()), controls->file());
     return {name, std::move(controls), "replay"};
   }
@@ -56,7 +58,7 @@ Shown find(std::optional<std::uint32_t> domain) {
         fmt::format("several replays on this host; choose one: --run {}", fmt::join(replays, ", --run ")),
         CommandError::Cause::kNoRun);
   const RunNote note = join_run(domain);
-  return {fmt::format("run {}", note.domain), std::make_unique<dashboard::Commands>(note), "run"};
+  return {fmt::format("run {}", note.domain), std::make_unique<dashboard::Commands>(note, log), "run"};
 }
 
 int show(std::optional<std::uint32_t> domain, dashboard::WebOptions web) {

@@ -20,12 +20,12 @@ std::string describe(const cli::ReplayState& state) {
 
 }  // namespace
 
-ReplayControls::ReplayControls(std::uint32_t domain)
+ReplayControls::ReplayControls(std::uint32_t domain, const Log& log)
     : domain_(domain),
       client_(domain),
       state_(client_.ask({})),
       lane_(
-          answers_, [this](const WebServer::Call& call) { return obey(call); }, "seek", [this] { look(); }) {}
+          answers_, [this](const WebServer::Call& call) { return obey(call); }, "seek", [this] { look(); }, log) {}
 
 std::string ReplayControls::obey(const WebServer::Call& call) {
   const std::string& name = call.service;

@@ -20,8 +20,9 @@ namespace constrictor::dashboard {
 /// seconds after the first message.
 class ReplayControls : public Controls {
  public:
-  /// Throws std::runtime_error if there is no replay in this domain.
-  explicit ReplayControls(std::uint32_t domain);
+  /// `log`: of the program, for errors that answer no call. Throws std::runtime_error if there is no replay in this
+  /// domain.
+  ReplayControls(std::uint32_t domain, const Log& log);
 
   [[nodiscard]] std::vector<std::string> services() const override {
     return {"pause", "resume", "step", "pace", "seek"};
