@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "barrier/local_run.hpp"
@@ -10,6 +11,7 @@
 #include "control/control.hpp"
 #include "guidance/guidance.hpp"
 #include "navigation/navigation.hpp"
+#include "robot/planar_message.hpp"
 #include "sim/physics/physics.hpp"
 #include "support/scripted_members.hpp"
 #include "support/waypoints.hpp"
@@ -30,19 +32,12 @@ ComponentFactory path_command() {
 
 /// Ground truth in frame M, which is the head's pose at the start.
 struct Truth {
-  bool known = false;
-  double x0_m = 0, y0_m = 0, yaw0_rad = 0;
+  std::optional<PlanarPose> X_WM;
   Point in_map(const msg::WorldState& world) {
-    const auto& head = world.module_poses[0];
-    if (!known) {
-      const auto& q = head.orientation;
-      *this = {true, head.position_m.x, head.position_m.y,
-               std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
-    }
-    const double dx_m = head.position_m.x - x0_m;
-    const double dy_m = head.position_m.y - y0_m;
-    return {dx_m * std::cos(yaw0_rad) + dy_m * std::sin(yaw0_rad),
-            dy_m * std::cos(yaw0_rad) - dx_m * std::sin(yaw0_rad)};
+    const PlanarPose X_WH = planar(world.module_poses[0]);
+    if (!X_WM) X_WM = X_WH;
+    const Eigen::Vector2d p_M = X_WM->to_local(X_WH.p);
+    return {p_M.x(), p_M.y()};
   }
 };
 

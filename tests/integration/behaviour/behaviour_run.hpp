@@ -23,6 +23,7 @@
 #include "guidance/guidance.hpp"
 #include "navigation/navigation.hpp"
 #include "perception/perception.hpp"
+#include "robot/planar_message.hpp"
 #include "sim/camera/camera.hpp"
 #include "sim/physics/physics.hpp"
 #include "support/scripted_members.hpp"
@@ -36,14 +37,13 @@ struct Place {
   [[nodiscard]] double distance_m(const Place& other) const { return std::hypot(other.x_m - x_m, other.y_m - y_m); }
   /// [rad] bearing of another place, positive left.
   [[nodiscard]] double bearing_rad(const Place& other) const {
-    return std::remainder(std::atan2(other.y_m - y_m, other.x_m - x_m) - yaw_rad, 2.0 * M_PI);
+    return wrap_angle(std::atan2(other.y_m - y_m, other.x_m - x_m) - yaw_rad);
   }
 };
 
 inline Place place_of(const msg::Pose3& pose) {
-  const auto& q = pose.orientation;
-  return {pose.position_m.x, pose.position_m.y,
-          std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))};
+  const PlanarPose X_W = planar(pose);
+  return {X_W.p.x(), X_W.p.y(), X_W.yaw_rad};
 }
 
 class Behaviour : public ::testing::Test {

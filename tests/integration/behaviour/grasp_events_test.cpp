@@ -67,8 +67,7 @@ class GraspEvents : public Behaviour {
     double sum_rad = 0.0;
     for (std::size_t m = world().module_count - 1; m > 0; --m) {
       const Place from_object{object().x_m, object().y_m, 0.0};
-      sum_rad +=
-          std::remainder(from_object.bearing_rad(module(m - 1)) - from_object.bearing_rad(module(m)), 2.0 * M_PI);
+      sum_rad += wrap_angle(from_object.bearing_rad(module(m - 1)) - from_object.bearing_rad(module(m)));
     }
     return sum_rad;
   }

@@ -77,7 +77,7 @@ TEST_F(Behaviour, RotateTurnsToTheRequestedSideUntilItsTimeout) {
   for (const bool left : {true, false}) {
     happened.clear();
     const auto turned_rad = [&, last = head().yaw_rad, sum = 0.0]() mutable {
-      sum += std::remainder(head().yaw_rad - last, 2.0 * M_PI);
+      sum += wrap_angle(head().yaw_rad - last);
       last = head().yaw_rad;
       return sum;
     };
@@ -113,7 +113,7 @@ TEST_F(Behaviour, ExploreMovesInTheRequestedDirectionAndLooksToBothSides) {
           forwards ? msg::kDirectionForwards : msg::kDirectionBackwards);
     until(
         [&] {  // the heading of the head relative to module 8, which does not turn when the head looks aside
-          const double look_rad = std::remainder(head().yaw_rad - module(8).yaw_rad, 2.0 * M_PI);
+          const double look_rad = wrap_angle(head().yaw_rad - module(8).yaw_rad);
           leftmost_rad = std::max(leftmost_rad, look_rad);
           rightmost_rad = std::min(rightmost_rad, look_rad);
           return false;
