@@ -13,7 +13,6 @@
 
 #include "cyclone/domain.hpp"
 #include "cyclone/endpoint.hpp"
-#include "cyclone/wait_set.hpp"
 #include "support/eventually.hpp"
 #include "support/process.hpp"
 #include "support/temporary_folder.hpp"
@@ -29,21 +28,17 @@ struct Witness {
   explicit Witness(unsigned domain)
       : here(domain),
         authority_reader(dds::Reader<msg::Authority>::member(here.participant(), "authority")),
-        event_reader(dds::Reader<msg::TaskEvent>::member(here.participant(), "task/event")),
-        wait_set(here.participant()) {
-    wait_set.attach(authority_reader.get());
-    wait_set.attach(event_reader.get());
-  }
+        event_reader(dds::Reader<msg::TaskEvent>::member(here.participant(), "task/event")) {}
   /// Reads until `condition` holds; false if it does not within the bound.
   template <class Condition>
   bool until(Condition condition, std::chrono::seconds bound) {
-    for (const auto end = std::chrono::steady_clock::now() + bound; !condition();) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      wait_set.wait(std::chrono::milliseconds(100));
-      authority_reader.take([this](const msg::Authority& now) { authority = now; });
-      event_reader.take([this](const msg::TaskEvent& event) { events.push_back(event); });
-    }
-    return true;
+    return eventually(
+        [&] {
+          authority_reader.take([this](const msg::Authority& now) { authority = now; });
+          event_reader.take([this](const msg::TaskEvent& event) { events.push_back(event); });
+          return condition();
+        },
+        bound);
   }
   /// Whether a process of this program (its source is PROGRAM.PID) has authority.
   [[nodiscard]] bool holds(const std::string& program) const {
@@ -59,7 +54,6 @@ struct Witness {
   dds::Domain here;
   dds::Reader<msg::Authority> authority_reader;
   dds::Reader<msg::TaskEvent> event_reader;
-  dds::WaitSet wait_set;
   msg::Authority authority{};
   std::vector<msg::TaskEvent> events;
 };

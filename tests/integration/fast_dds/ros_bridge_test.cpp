@@ -161,19 +161,16 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   const dds::Domain here(domain);
   const auto authorities = dds::Reader<msg::Authority>::member(here.participant(), "authority");
   const auto trajectories = dds::Reader<msg::DesiredTrajectory>::observer(here.participant(), "desired_trajectory");
-  dds::WaitSet wait_set(here.participant());
-  wait_set.attach(authorities.get());
-  wait_set.attach(trajectories.get());
   msg::Authority authority{};
   msg::DesiredTrajectory desired{};
   const auto until = [&](auto condition, std::chrono::seconds bound) {
-    for (const auto end = std::chrono::steady_clock::now() + bound; !condition();) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      wait_set.wait(50ms);
-      authorities.take([&](const msg::Authority& now) { authority = now; });
-      trajectories.take([&](const msg::DesiredTrajectory& now) { desired = now; });
-    }
-    return true;
+    return eventually(
+        [&] {
+          authorities.take([&](const msg::Authority& now) { authority = now; });
+          trajectories.take([&](const msg::DesiredTrajectory& now) { desired = now; });
+          return condition();
+        },
+        bound);
   };
   ASSERT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s));
   // An operator has authority: the constant velocity is refused. It is obeyed when the operator releases authority.

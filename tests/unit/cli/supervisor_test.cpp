@@ -5,9 +5,9 @@
 
 #include <csignal>
 #include <fstream>
-#include <thread>
 
 #include "runtime/host.hpp"
+#include "support/eventually.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::cli {
@@ -41,13 +41,12 @@ class SupervisorTest : public ::testing::Test {
   /// Polls until `condition` holds; false if it does not within the bound.
   template <class Condition>
   bool poll_until(Condition&& condition, std::chrono::seconds bound = 30s) {
-    const auto end = std::chrono::steady_clock::now() + bound;
-    while (!condition()) {
-      if (std::chrono::steady_clock::now() > end) return false;
-      supervisor_->poll();
-      std::this_thread::sleep_for(1ms);
-    }
-    return true;
+    return testing::eventually(
+        [&] {
+          supervisor_->poll();
+          return condition();
+        },
+        bound, 1ms);
   }
   bool poll_until_over() {
     return poll_until([this] { return supervisor_->poll() != State::kRunning; });
