@@ -1,5 +1,4 @@
-// waypoints: sends the robot along a path and prints the cross-track error. This is the smallest external planner: it
-// joins a run, starts one goal and waits for its end.
+// The smallest external planner: it joins a run, sends the robot along a path, and prints the cross-track error.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -54,7 +53,6 @@ int main(int argc, char** argv) {
     std::printf("cross-track error: %.3f m rms, %.3f m at most, in %d ticks\n",
                 count > 0 ? std::sqrt(squares_m2 / count) : 0.0, largest_m, count);
     if (end.state != msg::kGoalSucceeded) throw std::runtime_error("the robot stopped on the way: " + end.reason);
-    return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "waypoints: %s\n", error.what());
     return 70;
