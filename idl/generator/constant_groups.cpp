@@ -5,7 +5,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace constrictor::describe {
+namespace constrictor::generator {
 namespace {
 
 bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
@@ -72,4 +72,4 @@ std::vector<ConstantGroup> constant_groups(const Model& model) {
   return groups;
 }
 
-}  // namespace constrictor::describe
+}  // namespace constrictor::generator

@@ -6,7 +6,7 @@
 
 #include "idl/generator/idl_parser.hpp"
 
-namespace constrictor::describe {
+namespace constrictor::generator {
 
 /// Constants whose values count from 0 without gaps.
 struct ConstantGroup {
@@ -22,4 +22,4 @@ std::string group_of(const Field& field);
 /// names a group without constants, if an octet constant belongs to no group, or if values have gaps.
 std::vector<ConstantGroup> constant_groups(const Model& model);
 
-}  // namespace constrictor::describe
+}  // namespace constrictor::generator

@@ -5,7 +5,7 @@
 #include <map>
 #include <stdexcept>
 
-namespace constrictor::describe {
+namespace constrictor::generator {
 namespace {
 
 struct Token {
@@ -234,4 +234,4 @@ class Parser {
 
 void parse_idl(const std::string& path, const std::string& text, Model& model) { Parser(path, lex(text), model).run(); }
 
-}  // namespace constrictor::describe
+}  // namespace constrictor::generator

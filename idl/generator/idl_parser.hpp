@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace constrictor::describe {
+namespace constrictor::generator {
 
 struct Field {
   std::string name;
@@ -44,4 +44,4 @@ struct Model {
 /// Adds a file to `model`. Throws std::runtime_error with file and line if the text is not in the subset.
 void parse_idl(const std::string& path, const std::string& text, Model& model);
 
-}  // namespace constrictor::describe
+}  // namespace constrictor::generator

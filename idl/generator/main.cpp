@@ -14,7 +14,7 @@
 
 namespace {
 
-using namespace constrictor::describe;
+using namespace constrictor::generator;
 namespace fs = std::filesystem;
 
 constexpr const char* kMade = "// Made by constrictor_describe from the IDL files. Do not edit.\n#pragma once\n\n";

@@ -4,7 +4,8 @@
 
 #include <string>
 
-namespace constrictor::shaders {
+namespace constrictor {
+namespace shaders {
 
 /// Instanced solids. Rows 0 to 2 are the 3x4 matrix X_WInstance.
 inline constexpr const char* kSolidVertex = R"(#version 330 core
@@ -153,4 +154,5 @@ void main() {
 )");
 }
 
-}  // namespace constrictor::shaders
+}  // namespace shaders
+}  // namespace constrictor

@@ -20,7 +20,7 @@ namespace constrictor::testing {
 namespace {
 
 using namespace std::chrono_literals;
-namespace wire = dds::barrier_topics;
+namespace wire = barrier_topics;
 
 Process toys(const std::string& group, const std::string& roster, std::uint32_t domain, std::vector<std::string> more) {
   std::vector<std::string> arguments = {program("toy_host"), group,  "--domain", std::to_string(domain),
@@ -46,7 +46,7 @@ TEST(BarrierMessages, EachMemberOfARestartedProcessSendsReadyOnceItIsResumed) {
   const dds_entity_t participant = domain.participant();
   const auto reads = TopicSet::of(topics::kJointCommand);
   const auto writes = TopicSet::of(topics::kJointState);
-  const dds::MemberBus plant(participant, reads, writes, "physics");
+  const MemberBus plant(participant, reads, writes, "physics");
   const auto hellos = dds::Reader<msg::Hello>::member(participant, wire::kHello);
   const auto readies = dds::Reader<msg::Ready>::member(participant, wire::kReady);
   const dds::Writer<msg::Hello> hello(participant, wire::kHello, 1);
@@ -177,7 +177,7 @@ TEST(BarrierMessages, AMemberWithoutCheckpointsWorksUntilItDies) {
   const dds::Domain domain(claim.domain());
   const dds_entity_t participant = domain.participant();
   const auto writes = TopicSet::of(topics::kMissionStatus);
-  const dds::MemberBus bus(participant, {}, writes, "planner");
+  const MemberBus bus(participant, {}, writes, "planner");
   const auto hellos = dds::Reader<msg::Hello>::member(participant, wire::kHello);
   const auto starts = dds::Reader<msg::EpochStart>::member(participant, wire::kEpochStart);
   const auto ticks = dds::Reader<msg::Tick>::member(participant, wire::kTick);

@@ -49,7 +49,7 @@ class DeadObserver : public CliFixture, public ::testing::WithParamInterface<int
   }
   static void expect_tick(unsigned number, std::int64_t tick) {
     const dds::Domain outside(number);
-    const auto ticks = dds::Reader<msg::Tick>::observer(outside.participant(), dds::barrier_topics::kTick);
+    const auto ticks = dds::Reader<msg::Tick>::observer(outside.participant(), barrier_topics::kTick);
     EXPECT_TRUE(eventually([&] {
       std::int64_t newest = -1;
       ticks.take([&](const msg::Tick& message) { newest = std::max(newest, message.index); });
@@ -82,8 +82,8 @@ class Acknowledgements : public CliFixture {
  protected:
   const DomainClaim claim_;
   const dds::Domain domain_{claim_.domain()};
-  const dds::Writer<msg::RunState> first_{domain_.participant(), dds::barrier_topics::kRunState};
-  const dds::Writer<msg::Waiting> second_{domain_.participant(), dds::barrier_topics::kWaiting};
+  const dds::Writer<msg::RunState> first_{domain_.participant(), barrier_topics::kRunState};
+  const dds::Writer<msg::Waiting> second_{domain_.participant(), barrier_topics::kWaiting};
 
   [[nodiscard]] Process reader() const {
     return start({"record", (dir_ / "x.mcap").string(), "--domain", std::to_string(claim_.domain())});

@@ -142,7 +142,7 @@ class DeterminismRun : public ::testing::Test {
   }
   /// Waits until a process announces that it waits for `name`.
   [[nodiscard]] static bool is_awaited(dds_entity_t participant, const std::string& name) {
-    const auto waitings = dds::Reader<msg::Waiting>::observer(participant, dds::barrier_topics::kWaiting.name, 8);
+    const auto waitings = dds::Reader<msg::Waiting>::observer(participant, barrier_topics::kWaiting.name, 8);
     bool awaited = false;
     return eventually([&] {
       waitings.take([&](const msg::Waiting& waiting) { awaited |= waiting.writer == name; });

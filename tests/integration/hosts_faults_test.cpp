@@ -30,7 +30,7 @@ TEST_F(HostsFaults, AFreezeOfAllHostsLongerThanThePatienceEndsNoRun) {
       ",<CycloneDDS><Domain><Discovery><LeaseDuration>2s</LeaseDuration></Discovery></Domain></CycloneDDS>";
   Process launcher = begun("1x");
   RunTicks observer(launcher);
-  const auto ticks = dds::Reader<msg::Tick>::observer(observer.participant(), dds::barrier_topics::kTick);
+  const auto ticks = dds::Reader<msg::Tick>::observer(observer.participant(), barrier_topics::kTick);
   ASSERT_TRUE(eventually([&] { return ticks.writers() > 0; }));
   const auto begin = std::chrono::steady_clock::now();
   signal_all(SIGSTOP);

@@ -252,7 +252,7 @@ TEST_F(Introspection, StatusShowsAuthorityAndRefusalsAndStatusWatchUpdatesThem) 
     const auto components = read_components(stranger.participant());
     ASSERT_EQ(components.size(), 3u) << "the client library must list physics, overview and input";
     EXPECT_EQ(components.at("input").state, msg::kComponentRunning);
-    const dds::Writer<msg::Tick> ticks(stranger.participant(), dds::barrier_topics::kTick, 1);
+    const dds::Writer<msg::Tick> ticks(stranger.participant(), barrier_topics::kTick, 1);
     ASSERT_TRUE(eventually([&] { return ticks.readers() >= 2; }));
     ticks.write(msg::Tick{});
     EXPECT_TRUE(eventually([&] {

@@ -74,7 +74,7 @@ TEST_F(RunCommand, AMemberKilledTenTimesDoesNotEndTheRunWhileTicksAdvance) {
   ASSERT_EQ(run(600, "undisturbed", {"--in-process"}).wait(30s), exit_status::kOk);
   Process launcher = run(600, "r", {"--pace", "2x"});
   RunTicks ticks(launcher);
-  const auto statuses = dds::Reader<msg::ComponentStatus>::member(ticks.participant(), dds::barrier_topics::kStatus);
+  const auto statuses = dds::Reader<msg::ComponentStatus>::member(ticks.participant(), barrier_topics::kStatus);
   for (std::uint32_t incarnation = 1; incarnation <= 10; ++incarnation) {
     bool steps = false;
     ASSERT_TRUE(eventually([&] {

@@ -38,7 +38,7 @@ class RunControl : public CliFixture {
   [[nodiscard]] bool reaches(const Process& launcher, std::int64_t tick) const {
     if (!eventually([&] { return launcher.output().find("report in") != std::string::npos; })) return false;
     const dds::Domain observer(domain());
-    const auto states = dds::Reader<msg::RunState>::member(observer.participant(), dds::barrier_topics::kRunState);
+    const auto states = dds::Reader<msg::RunState>::member(observer.participant(), barrier_topics::kRunState);
     return eventually(
         [&] {
           bool there = false;
@@ -56,7 +56,7 @@ class RunControl : public CliFixture {
   /// says something else, or nothing.
   [[nodiscard]] bool stays_paused_at(std::int64_t next, std::chrono::milliseconds time) const {
     const dds::Domain observer(domain());
-    const auto states = dds::Reader<msg::RunState>::member(observer.participant(), dds::barrier_topics::kRunState);
+    const auto states = dds::Reader<msg::RunState>::member(observer.participant(), barrier_topics::kRunState);
     std::optional<std::chrono::steady_clock::time_point> first, last;
     bool paused = true;
     const bool announced = eventually([&] {
@@ -173,7 +173,7 @@ TEST_F(RunControl, ARunThatMakesManyStepsAnnouncesItsTickMeanwhile) {
   ASSERT_EQ(command({"step", "3000"}), exit_status::kOk) << output_;
   EXPECT_EQ(next_tick(), paused + 3000) << output_;
   const dds::Domain observer(domain());
-  const auto states = dds::Reader<msg::RunState>::member(observer.participant(), dds::barrier_topics::kRunState);
+  const auto states = dds::Reader<msg::RunState>::member(observer.participant(), barrier_topics::kRunState);
   Process steps = start({"step", "900000"});  // minutes
   std::set<std::int64_t> announced;
   EXPECT_TRUE(eventually([&] {
@@ -196,8 +196,8 @@ TEST_F(RunControl, EachCommandIsAnsweredWhateverOtherSourcesSend) {
   ASSERT_TRUE(reaches(launcher, 5)) << launcher.output();
   const dds::Domain outside(domain());
   const auto answers =
-      dds::Reader<msg::RunControlAnswer>::member(outside.participant(), dds::barrier_topics::kRunControlAnswer);
-  const dds::Writer<msg::RunControl> control(outside.participant(), dds::barrier_topics::kRunControl, 1);
+      dds::Reader<msg::RunControlAnswer>::member(outside.participant(), barrier_topics::kRunControlAnswer);
+  const dds::Writer<msg::RunControl> control(outside.participant(), barrier_topics::kRunControl, 1);
   msg::RunControl
       ahead{};  // its number is the time of a clock that is an hour ahead; several sources could use its name
   dds::set_text(ahead.source, "constrictor");

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
-namespace wire = dds::barrier_topics;
+namespace wire = barrier_topics;
 
 /// True if the process has several threads. It has them as soon as it begins to set up DDS.
 bool has_threads(pid_t pid) {

@@ -18,7 +18,7 @@ class RunTicks {
   /// Of the run that this launcher has started.
   explicit RunTicks(Process& launcher)
       : domain_(domain_of(launcher)),
-        ticks_(dds::Reader<msg::Tick>::observer(domain_.participant(), dds::barrier_topics::kTick)) {}
+        ticks_(dds::Reader<msg::Tick>::observer(domain_.participant(), barrier_topics::kTick)) {}
 
   /// Waits until the run has made `count` ticks more. False if it has not within the bound of eventually().
   [[nodiscard]] bool pass(std::int64_t count) {

@@ -151,7 +151,7 @@ TEST(RuntimeProcesses, AnEmergencyStopKeepsTheOperatorsPace) {
 TEST(RuntimeProcesses, RealtimePaceDoesNotWaitForMembersAndCountsSkippedSteps) {
   ToyRun run(150, {"--realtime"});
   const dds::Domain domain(run.claim.domain());
-  const auto statuses = dds::Reader<msg::ComponentStatus>::member(domain.participant(), dds::barrier_topics::kStatus);
+  const auto statuses = dds::Reader<msg::ComponentStatus>::member(domain.participant(), barrier_topics::kStatus);
   std::map<std::string, std::uint64_t> skipped;
   std::map<std::string, bool> ended;
   std::map<std::string, double> late_us;

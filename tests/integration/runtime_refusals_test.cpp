@@ -53,8 +53,8 @@ TEST(RuntimeRefusals, AMissingMemberIsNamedAndTheOthersGiveUp) {
 TEST(RuntimeRefusals, AnEndpointThatDoesNotMatchIsNamedWithItsQos) {
   const DomainClaim claim;
   const dds::Domain domain(claim.domain());
-  const auto hellos = dds::Reader<msg::Hello>::member(domain.participant(), dds::barrier_topics::kHello);
-  const dds::Writer<msg::Hello> hello(domain.participant(), dds::barrier_topics::kHello, 1);
+  const auto hellos = dds::Reader<msg::Hello>::member(domain.participant(), barrier_topics::kHello);
+  const dds::Writer<msg::Hello> hello(domain.participant(), barrier_topics::kHello, 1);
   Process physics({program("toy_host"), "physics", "--domain", std::to_string(claim.domain()), "--roster",
                    "physics,control", "--robot", ""});
   msg::Hello control{};

@@ -16,15 +16,15 @@ namespace constrictor::testing {
 class Stranger {
  public:
   explicit Stranger(dds_entity_t participant)
-      : hello_(participant, dds::barrier_topics::kHello, 64),
-        ready_(participant, dds::barrier_topics::kReady, 64),
-        done_(participant, dds::barrier_topics::kTickDone, 64),
-        epoch_(participant, dds::barrier_topics::kEpochStart, 8),
-        tick_(participant, dds::barrier_topics::kTick, 8),
-        resume_(participant, dds::barrier_topics::kResume, 8),
-        refused_(participant, dds::barrier_topics::kRefused, 8),
-        state_(participant, dds::barrier_topics::kRunState, 8),
-        control_(participant, dds::barrier_topics::kRunControl, 8) {}
+      : hello_(participant, barrier_topics::kHello, 64),
+        ready_(participant, barrier_topics::kReady, 64),
+        done_(participant, barrier_topics::kTickDone, 64),
+        epoch_(participant, barrier_topics::kEpochStart, 8),
+        tick_(participant, barrier_topics::kTick, 8),
+        resume_(participant, barrier_topics::kResume, 8),
+        refused_(participant, barrier_topics::kRefused, 8),
+        state_(participant, barrier_topics::kRunState, 8),
+        control_(participant, barrier_topics::kRunControl, 8) {}
 
   [[nodiscard]] bool matched_members() const {
     return epoch_.readers() > 3 && tick_.readers() > 3 && resume_.readers() > 3;

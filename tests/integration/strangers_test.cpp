@@ -23,9 +23,8 @@ class Commander {
  public:
   explicit Commander(std::uint32_t number)
       : domain_(number),
-        answers_(
-            dds::Reader<msg::RunControlAnswer>::member(domain_.participant(), dds::barrier_topics::kRunControlAnswer)),
-        control_(domain_.participant(), dds::barrier_topics::kRunControl) {}
+        answers_(dds::Reader<msg::RunControlAnswer>::member(domain_.participant(), barrier_topics::kRunControlAnswer)),
+        control_(domain_.participant(), barrier_topics::kRunControl) {}
   /// The refusal of a command; "" if it was obeyed, "no answer" if no answer came.
   std::string send(std::uint8_t command, const std::string& token, std::uint64_t run_id) {
     msg::RunControl message{};

@@ -189,7 +189,7 @@ TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndPrintsIt) {
   ASSERT_EQ(command({"release"}), exit_status::kOk) << output_;
   ASSERT_TRUE(watcher.wait_for_level(msg::kAuthorityNone));
   ASSERT_EQ(command({"pause"}), exit_status::kOk) << output_;
-  const auto requests = dds::Reader<msg::Request>::observer(watcher.participant(), dds::barrier_topics::kRequest, 16);
+  const auto requests = dds::Reader<msg::Request>::observer(watcher.participant(), barrier_topics::kRequest, 16);
   Process starting = start({"task", "start", "rotate", "--direction", "left"});
   bool asked = false;  // a paused run answers nothing that could be waited for
   ASSERT_TRUE(eventually([&] {

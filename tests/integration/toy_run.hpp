@@ -50,7 +50,7 @@ struct ToyRun {
   }
   [[nodiscard]] static bool wait_for_step_of(const dds::Domain& domain, const std::string& component,
                                              std::uint32_t incarnation) {
-    const auto reader = dds::Reader<msg::ComponentStatus>::member(domain.participant(), dds::barrier_topics::kStatus);
+    const auto reader = dds::Reader<msg::ComponentStatus>::member(domain.participant(), barrier_topics::kStatus);
     bool seen = false;
     return eventually([&] {
       reader.take([&](const msg::ComponentStatus& s) {

@@ -83,7 +83,7 @@ class Program {
     }
   }
   dds::Entity participant_;
-  dds::RequestWriter writer_;
+  RequestWriter writer_;
   dds::Reader<msg::RequestAnswer> answers_;
   std::string name_;
   std::uint8_t level_;

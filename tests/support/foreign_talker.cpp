@@ -89,7 +89,7 @@ void silent_qos(dds_entity_t participant) {
 
 /// Publishes the Hello of a member of another version of this project.
 void other_idl(dds_entity_t participant) {
-  const dds::Writer<msg::Hello> writer(participant, dds::barrier_topics::kHello, 8);
+  const dds::Writer<msg::Hello> writer(participant, barrier_topics::kHello, 8);
   msg::Hello hello{};
   dds::set_text(hello.component, "guidance");
   dds::set_text(hello.idl_hash, std::string(64, 'b'));
@@ -104,7 +104,7 @@ void other_idl(dds_entity_t participant) {
 
 /// Creates the writer of a plant without checking whether the domain already has a plant.
 void plant(dds_entity_t participant) {
-  const dds::Writer<msg::Tick> writer(participant, dds::barrier_topics::kTick, dds::barrier_topics::kTick.depth);
+  const dds::Writer<msg::Tick> writer(participant, barrier_topics::kTick, barrier_topics::kTick.depth);
   std::puts("talking");
   std::fflush(stdout);
   while (!g_stop) std::this_thread::sleep_for(10ms);

@@ -18,7 +18,7 @@ using namespace constrictor;
 /// Ends the run after a number of ticks, as the component `report` does. The file name of the scenario begins with this
 /// number. The toy prints the last angle of the plant's joint and a hash of all angles; if it has an output directory,
 /// it also writes mission.json. It logs as many lines in each step as the environment variable TOY_LINES says.
-class ToyReport : public StatefulComponent<toys::Mixer> {
+class ToyReport : public StatefulComponent<testing::toys::Mixer> {
  public:
   ToyReport(Wiring& wiring, const Setup& setup)
       : wiring_(wiring),
@@ -52,7 +52,7 @@ class ToyReport : public StatefulComponent<toys::Mixer> {
 };
 
 /// Steps once per second of simulated time, as the real `overview` does, and writes nothing.
-class ToyOverview : public StatefulComponent<toys::Mixer> {
+class ToyOverview : public StatefulComponent<testing::toys::Mixer> {
  public:
   ToyOverview(Wiring& wiring, const Setup&) : joints_(wiring.latest(topics::kJointState)) {}
   [[nodiscard]] Timing timing() const override { return {50, 1}; }
@@ -63,7 +63,7 @@ class ToyOverview : public StatefulComponent<toys::Mixer> {
 };
 
 /// Publishes that an operator takes authority at tick 10 and latches an emergency stop at tick 20.
-class ToyInput : public StatefulComponent<toys::Mixer> {
+class ToyInput : public StatefulComponent<testing::toys::Mixer> {
  public:
   ToyInput(Wiring& wiring, const Setup&) : authority_(wiring.output(topics::kAuthority)) {}
   void step(const Tick& tick) override {
@@ -83,10 +83,10 @@ ComponentFactory made(const std::string& name) {
 }
 
 ComponentFactory factory(const std::string& name) {
-  if (name == "physics") return toys::plant();
-  if (name == "navigation") return toys::navigation({2, 2});
-  if (name == "control") return toys::control();
-  if (name == "planner") return toys::planner();
+  if (name == "physics") return testing::toys::plant();
+  if (name == "navigation") return testing::toys::navigation({2, 2});
+  if (name == "control") return testing::toys::control();
+  if (name == "planner") return testing::toys::planner();
   if (name == "overview") return made<ToyOverview>(name);
   if (name == "input") return made<ToyInput>(name);
   return made<ToyReport>("report");

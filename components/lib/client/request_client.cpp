@@ -52,7 +52,7 @@ struct RequestClient::Endpoints {
   dds::Reader<msg::RequestAnswer> answer;
   dds::Reader<msg::StopState> stops;
   dds::Writer<msg::EmergencyStop> stop;
-  dds::RequestWriter request;
+  RequestWriter request;
   std::optional<GoalReader> goals;
 };
 

@@ -6,7 +6,7 @@
 #include "constrictor/reflect.hpp"
 #include "cyclone/run_token.hpp"
 
-namespace constrictor::dds {
+namespace constrictor {
 namespace {
 
 constexpr int kMostStrange = 4096;
@@ -79,24 +79,25 @@ ClientLink::ClientLink(dds_entity_t participant, std::uint16_t robot_id, Admit a
       gate_(std::make_unique<Gate>()),
       tracker_(std::make_unique<WriterTracker>(grace)) {
   gate_->token = std::move(token);
-  const Qos qos = make_qos();
+  const dds::Qos qos = dds::make_qos();
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   // DDS deletes the instance of a dead source 1 s after its end was taken, because a long run has many sources.
   dds_qset_reader_data_lifecycle(qos.get(), DDS_SECS(1), DDS_SECS(1));
-  const Entity topic(dds_create_topic(participant, &descriptor<msg::Request>(), kRequestTopic, nullptr, nullptr),
-                     "dds_create_topic");
+  const dds::Entity topic(
+      dds_create_topic(participant, &dds::descriptor<msg::Request>(), kRequestTopic, nullptr, nullptr),
+      "dds_create_topic");
   const auto passes = [](const void* request, void* gate) {
     return static_cast<Gate*>(gate)->passes(*static_cast<const msg::Request*>(request));
   };
-  check(dds_set_topic_filter_and_arg(topic.get(), passes, gate_.get()), "dds_set_topic_filter_and_arg");
+  dds::check(dds_set_topic_filter_and_arg(topic.get(), passes, gate_.get()), "dds_set_topic_filter_and_arg");
   // A listener receives every change; a status would keep only the last change. It is set before the reader exists, so
   // that it misses none.
   const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(dds_create_listener(tracker_.get()),
                                                                             dds_delete_listener);
   dds_lset_liveliness_changed(listener.get(), on_liveliness);
-  reader_ = Entity(dds_create_reader(participant, topic.get(), qos.get(), listener.get()), "dds_create_reader");
+  reader_ = dds::Entity(dds_create_reader(participant, topic.get(), qos.get(), listener.get()), "dds_create_reader");
 }
 
 void ClientLink::track_writers_for(ClientRequests& requests) const {
@@ -110,7 +111,7 @@ void ClientLink::take(ClientRequests& requests, const std::function<void(const s
   for (;;) {
     void* message = nullptr;  // one at a time: there are only a few requests in a tick
     dds_sample_info_t info{};
-    const int count = check(dds_take(reader_.get(), &message, &info, 1, 1), "dds_take");
+    const int count = dds::check(dds_take(reader_.get(), &message, &info, 1, 1), "dds_take");
     if (count == 0) return;
     const dds::Loan loan(reader_.get(), &message, 1);
     const auto& request = *static_cast<const msg::Request*>(message);
@@ -128,4 +129,4 @@ void ClientLink::take(ClientRequests& requests, const std::function<void(const s
   }
 }
 
-}  // namespace constrictor::dds
+}  // namespace constrictor

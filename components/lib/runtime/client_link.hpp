@@ -16,7 +16,7 @@
 #include "constrictor/topics.hpp"
 #include "cyclone/endpoint.hpp"
 
-namespace constrictor::dds {
+namespace constrictor {
 
 /// Topic on which clients send requests.
 inline constexpr const char* kRequestTopic = barrier_topics::kRequest;
@@ -81,7 +81,7 @@ class ClientLink {
   };
   std::unique_ptr<Gate> gate_;              // outlives the reader, which calls it in threads of DDS
   std::unique_ptr<WriterTracker> tracker_;  // outlives the reader, whose listener calls it
-  Entity reader_;
+  dds::Entity reader_;
 };
 
-}  // namespace constrictor::dds
+}  // namespace constrictor

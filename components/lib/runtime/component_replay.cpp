@@ -127,7 +127,7 @@ class ComponentReplay {
       const auto done = message_of<msg::TickDone>(message.data);
       const auto member = done ? members_.find(done->component) : members_.end();
       if (member == members_.end()) return;
-      if (const auto step = dds::from_wire(*done)) member->second->take(*step);
+      if (const auto step = from_wire(*done)) member->second->take(*step);
     } else if (channel.topic == wire::kEpochStart.name) {
       const auto start = message_of<msg::EpochStart>(message.data);
       for (auto& [name, member] : members_) {

@@ -13,7 +13,7 @@
 namespace constrictor {
 namespace {
 
-namespace wire = dds::barrier_topics;
+namespace wire = barrier_topics;
 
 constexpr int kMostStrangeControls = 4096;  // without the token, in the life of the process
 
@@ -112,7 +112,7 @@ void ConductorSide::take_done(const msg::TickDone& message) {
   const auto reject = [this](const std::string& reason) { members_.reject(wire::kTickDone, reason); };
   if (const auto why = conductor_->foreign(message.component, {message.run_id, message.epoch}, message.incarnation))
     return reject(*why);
-  const auto step = dds::from_wire(message);
+  const auto step = from_wire(message);
   if (!step) return reject("checkpoint: damaged");
   if (conductor_->is_early(*step)) early_.push_back(*step);
   else if (const auto why = conductor_->implausible(*step)) reject(*why);
@@ -205,7 +205,7 @@ void ConductorSide::resume(const Resume& resume) {
   if (members_.on_resume(resume)) return;
   if (stays_until_) stay_longer();
   std::string block;
-  resume_writer_.write(dds::to_wire(resume, block));
+  resume_writer_.write(to_wire(resume, block));
 }
 
 void ConductorSide::refuse(const Hello& hello, const std::string& reason) {

@@ -12,7 +12,7 @@ namespace constrictor {
 void ConductorSide::connect_hardware() {
   const auto link = plant_.hardware_link();
   if (!link) return;
-  namespace wire = dds::barrier_topics;
+  namespace wire = barrier_topics;
   const dds_entity_t participant = links_.participant();
   const int depth = HardwareLink::kMostSamples;
   // Best effort and volatile: the readers match writers of any quality of service and receive nothing from the past.

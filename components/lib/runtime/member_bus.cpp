@@ -9,12 +9,12 @@
 #include "barrier/plant_topics.hpp"
 #include "cyclone/discovery.hpp"
 
-namespace constrictor::dds {
+namespace constrictor {
 namespace {
 
 template <class T>
 const dds_topic_descriptor_t* descriptor_of(const Topic<T>&) {
-  return &descriptor<T>();
+  return &dds::descriptor<T>();
 }
 
 const dds_topic_descriptor_t& descriptor_of_id(std::size_t topic_id) {
@@ -73,24 +73,26 @@ bool names(const std::vector<std::string>& identities, std::string_view componen
 }  // namespace
 
 MemberBus::MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity,
-                     WriterBook* book)
+                     dds::WriterBook* book)
     : participant_(participant) {
-  const ReaderGuard guard{book};
+  const dds::ReaderGuard guard{book};
   for (const auto& topic : topics::kInfos) {
     const std::string name(topic.name);
     if (writes.contains(topic.id)) {
-      writers_[topic.id] = Entity(create_writer(participant, descriptor_of_id(topic.id), name, topic.depth, identity),
-                                  "dds_create_writer");
+      writers_[topic.id] =
+          dds::Entity(dds::create_writer(participant, descriptor_of_id(topic.id), name, topic.depth, identity),
+                      "dds_create_writer");
     }
     if (reads.contains(topic.id)) {
-      readers_[topic.id] = Entity(create_member_reader(participant, descriptor_of_id(topic.id), name, identity, guard),
-                                  "dds_create_reader");
+      readers_[topic.id] =
+          dds::Entity(dds::create_member_reader(participant, descriptor_of_id(topic.id), name, identity, guard),
+                      "dds_create_reader");
     }
   }
 }
 
 void MemberBus::write(const TopicInfo& topic, const Sample& sample) const {
-  check(dds_write(writers_[topic.id].get(), sample.message.get()), "dds_write");
+  dds::check(dds_write(writers_[topic.id].get(), sample.message.get()), "dds_write");
 }
 
 std::vector<std::pair<std::size_t, dds_entity_t>> MemberBus::readers() const {
@@ -109,8 +111,8 @@ void MemberBus::take(std::size_t topic_id, const std::function<void(const Sample
   for (;;) {
     std::array<ddsi_serdata*, kBatch> data{};
     std::array<dds_sample_info_t, kBatch> infos{};
-    const int count =
-        check(dds_takecdr(readers_[topic_id].get(), data.data(), kBatch, infos.data(), DDS_ANY_STATE), "dds_takecdr");
+    const int count = dds::check(
+        dds_takecdr(readers_[topic_id].get(), data.data(), kBatch, infos.data(), DDS_ANY_STATE), "dds_takecdr");
     struct Taken {
       std::array<ddsi_serdata*, kBatch>& data;
       std::size_t count;
@@ -130,12 +132,12 @@ Unmatched MemberBus::unmatched(const std::map<std::size_t, std::vector<std::stri
                                const std::string& plant) const {
   for (const auto& topic : topics::kInfos) {
     if (readers_[topic.id] && !unwritten.contains(topic.id) &&
-        !names(matched_user_data(readers_[topic.id].get(), false), writer_in_run(topic, plant))) {
+        !names(dds::matched_user_data(readers_[topic.id].get(), false), writer_in_run(topic, plant))) {
       return {&topic, true, writer_in_run(topic, plant)};
     }
     const auto readers = readers_of.find(topic.id);
     if (!writers_[topic.id] || readers == readers_of.end()) continue;
-    const auto identities = matched_user_data(writers_[topic.id].get(), true);
+    const auto identities = dds::matched_user_data(writers_[topic.id].get(), true);
     for (const auto& reader : readers->second) {
       if (!names(identities, reader)) return {&topic, false, reader};
     }
@@ -147,27 +149,27 @@ std::string MemberBus::explain(const Unmatched& missing) const {
   const char* here = missing.reader ? "reader" : "writer";
   const char* there = missing.reader ? "writer" : "reader";
   const std::string topic(missing.topic->name);
-  const Endpoint own = own_endpoint((missing.reader ? readers_ : writers_)[missing.topic->id].get(),
-                                    descriptor_of_id(missing.topic->id));
-  std::string text = topic + ": the " + here + " here (" + describe(own.qos) + ") has not met the " + there + " of " +
-                     missing.counterpart;
+  const dds::Endpoint own = dds::own_endpoint((missing.reader ? readers_ : writers_)[missing.topic->id].get(),
+                                              descriptor_of_id(missing.topic->id));
+  std::string text = topic + ": the " + here + " here (" + dds::describe(own.qos) + ") has not met the " + there +
+                     " of " + missing.counterpart;
   // Prefer an endpoint that names the component. Otherwise use an endpoint without user data: its author may have
   // forgotten to set the name.
-  std::optional<Endpoint> found;
-  for (auto& endpoint : Discovery(participant_).endpoints()) {
+  std::optional<dds::Endpoint> found;
+  for (auto& endpoint : dds::Discovery(participant_).endpoints()) {
     if (endpoint.topic != topic || endpoint.writer != missing.reader) continue;
     const bool named = names({endpoint.user_data}, missing.counterpart);
     if (named || (endpoint.user_data.empty() && !found)) found = std::move(endpoint);
     if (named) break;
   }
   if (!found) return text + ", which is not there";
-  const std::string why = missing.reader ? mismatch(*found, own) : mismatch(own, *found);
+  const std::string why = missing.reader ? dds::mismatch(*found, own) : dds::mismatch(own, *found);
   const bool nameless = found->user_data.empty();
   text += (nameless ? std::string("; there is a ") + there + " without a name (" : std::string(" (")) +
-          describe(found->qos) + "); ";
+          dds::describe(found->qos) + "); ";
   if (!why.empty()) return text + why;
   return text +
          (nameless ? "its user data must be '" + missing.counterpart + "'" : "perhaps their type information differs");
 }
 
-}  // namespace constrictor::dds
+}  // namespace constrictor

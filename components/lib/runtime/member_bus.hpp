@@ -13,7 +13,7 @@
 #include "component/topic_set.hpp"
 #include "cyclone/endpoint.hpp"
 
-namespace constrictor::dds {
+namespace constrictor {
 
 /// An endpoint of this process that has not met its counterpart.
 struct Unmatched {
@@ -25,10 +25,10 @@ struct Unmatched {
 
 class MemberBus {
  public:
-  /// `identity`: names of the components of this process ("a,b"), the user data of its endpoints. Throws Error. `book`:
-  /// notes the writers that are matched with the readers, and must outlive them; null: none.
+  /// `identity`: names of the components of this process ("a,b"), the user data of its endpoints. Throws dds::Error.
+  /// `book`: notes the writers that are matched with the readers, and must outlive them; null: none.
   MemberBus(dds_entity_t participant, TopicSet reads, TopicSet writes, const std::string& identity,
-            WriterBook* book = nullptr);
+            dds::WriterBook* book = nullptr);
 
   void write(const TopicInfo& topic, const Sample& sample) const;
   /// Readers with their topic ids, to wait for their samples.
@@ -47,8 +47,8 @@ class MemberBus {
 
  private:
   dds_entity_t participant_;
-  std::array<Entity, topics::kCount> readers_;
-  std::array<Entity, topics::kCount> writers_;
+  std::array<dds::Entity, topics::kCount> readers_;
+  std::array<dds::Entity, topics::kCount> writers_;
 };
 
-}  // namespace constrictor::dds
+}  // namespace constrictor

@@ -11,7 +11,7 @@
 namespace constrictor {
 namespace {
 
-namespace wire = dds::barrier_topics;
+namespace wire = barrier_topics;
 
 /// The name in Admission of every plant, also of one whose hashes differ: only a plant may refuse a process.
 constexpr const char* kRefuser = "(plants)";
@@ -46,7 +46,7 @@ void MemberSide::make_endpoints() {
     const bool in_roster = std::count(roster.begin(), roster.end(), writer) > 0;
     if (hosts(writer) || !in_roster) reads.erase(topic.id);
   }
-  bus_ = std::make_unique<dds::MemberBus>(participant, reads, writes, context_.identity, &links_.admission().book());
+  bus_ = std::make_unique<MemberBus>(participant, reads, writes, context_.identity, &links_.admission().book());
   hello_writer_ = {participant, wire::kHello};
   waiting_writer_ = {participant, wire::kWaiting};
   status_writer_ = {participant, wire::kStatus};
@@ -95,12 +95,12 @@ void MemberSide::attach_inputs() {
   for (auto& local : members_) {
     Member& member = *local.member;
     if (!member.client_requests()) continue;
-    client_link_ = std::make_unique<dds::ClientLink>(
+    client_link_ = std::make_unique<ClientLink>(
         links_.participant(), context_.options.setup.robot_id,
         [this](const msg::Request& request) {
           return context_.stranger(request.token, request.header.run_id, run_id());
         },
-        dds::kWriterGrace, context_.options.token);
+        kWriterGrace, context_.options.token);
     client_link_->track_writers_for(*member.client_requests());
     links_.attach(client_link_->get(), [this, &member] {
       client_link_->take(*member.client_requests(), [&](const std::string& reason) { member.refuse(reason); });
@@ -151,13 +151,13 @@ void MemberSide::reject(const std::string& topic, const std::string& reason) {
 std::optional<dds::GuidPrefix> MemberSide::participant_that_proves(const Hello& hello, dds_instance_handle_t writer) {
   const auto participant = links_.admission().book().participant_of(writer);
   const std::string& token = context_.options.token;
-  if (!participant || token.empty() || same_token(hello.proof, dds::hello_proof(token, hello, *participant)))
+  if (!participant || token.empty() || same_token(hello.proof, hello_proof(token, hello, *participant)))
     return participant;
   return {};
 }
 
 void MemberSide::take_hello(const msg::Hello& message, dds_instance_handle_t writer) {
-  const Hello hello = dds::from_wire(message);
+  const Hello hello = from_wire(message);
   if (hello.run_id != 0 && !accept_run(wire::kHello, hello.run_id)) return;
   if (hosts(hello.component) && hello.pid == ::getpid() && hello.host == context_.host_name)
     return;  // sent by this process itself
@@ -202,7 +202,7 @@ void MemberSide::take_resume(const msg::Resume& message) {
     Member& member = *local.member;
     if (member.name() != message.component || member.incarnation() != message.incarnation || member.in_epoch())
       continue;
-    const auto resume = dds::from_wire(message);
+    const auto resume = from_wire(message);
     if (resume) member.on_resume(*resume);
     else member.refuse("resume.checkpoint: damaged");
   }

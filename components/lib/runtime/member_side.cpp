@@ -90,7 +90,7 @@ Hello MemberSide::hello_of(const LocalMember& local) const {
   hello.reads = member.reads();
   hello.writes = member.writes();
   const std::string& token = context_.options.token;
-  if (!token.empty()) hello.proof = dds::hello_proof(token, hello, dds::own_prefix(links_.participant()));
+  if (!token.empty()) hello.proof = hello_proof(token, hello, dds::own_prefix(links_.participant()));
   return hello;
 }
 
@@ -98,7 +98,7 @@ void MemberSide::send_hello() {
   last_hello_ = HostContext::Clock::now();
   for (const auto& local : members_) {
     const Hello hello = hello_of(local);
-    hello_writer_.write(dds::to_wire(hello));
+    hello_writer_.write(to_wire(hello));
     if (conductor_) conductor_->on_hello(hello);
   }
 }
@@ -109,7 +109,7 @@ void MemberSide::repeat_hello() {
   if (now - last_hello_ < kHelloInterval) return;
   last_hello_ = now;
   for (const auto& local : members_) {
-    if (!local.member->in_epoch()) hello_writer_.write(dds::to_wire(hello_of(local)));
+    if (!local.member->in_epoch()) hello_writer_.write(to_wire(hello_of(local)));
   }
 }
 
@@ -281,7 +281,7 @@ void MemberSide::done(const TickDone& step) {
   if (conductor_) return conductor_->on_done(step);
   std::string block;
   dds::GatheredSends::wake_receivers();
-  done_writer_.write(dds::to_wire(step, block));
+  done_writer_.write(to_wire(step, block));
 }
 
 }  // namespace constrictor

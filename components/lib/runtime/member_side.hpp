@@ -129,8 +129,8 @@ class MemberSide : private MemberSink {
   std::vector<LocalMember> members_;
   Member* plant_ = nullptr;
   ConductorSide* conductor_ = nullptr;  ///< null: it is in another process
-  std::unique_ptr<dds::MemberBus> bus_;
-  std::unique_ptr<dds::ClientLink> client_link_;  ///< null: no member of this process takes requests
+  std::unique_ptr<MemberBus> bus_;
+  std::unique_ptr<ClientLink> client_link_;  ///< null: no member of this process takes requests
   dds::Reader<msg::Tick> tick_reader_;
   dds::Reader<msg::EpochStart> epoch_reader_;
   dds::Reader<msg::Resume> resume_reader_;
@@ -145,7 +145,7 @@ class MemberSide : private MemberSink {
   std::map<std::string, Hello> hellos_;  ///< of members in other processes
   HostContext::Clock::time_point last_hello_{};
   HostContext::Clock::time_point last_match_check_{};
-  dds::Unmatched unmatched_;  ///< result of the last check
+  Unmatched unmatched_;  ///< result of the last check
 };
 
 }  // namespace constrictor

@@ -203,7 +203,7 @@ void RunRecorder::add(const TickDone& done) {
   const TickDone light{done.component, done.epoch,       done.incarnation, done.index, done.published,
                        done.consumed,  done.output_hash, done.end_of_run,  {},         {}};
   std::string none;
-  write(tick_done_, dds::to_wire(light, none), static_cast<std::uint32_t>(done.index), done.index * period_ns_);
+  write(tick_done_, to_wire(light, none), static_cast<std::uint32_t>(done.index), done.index * period_ns_);
 }
 
 void RunRecorder::add(const TopicInfo& topic, const Sample& sample) {

@@ -8,7 +8,7 @@
 #include "constrictor/hex.hpp"
 #include "cyclone/run_token.hpp"
 
-namespace constrictor::dds {
+namespace constrictor {
 namespace {
 
 dds_sequence_octet borrow(std::string& block) {
@@ -81,7 +81,7 @@ std::optional<TickDone> from_wire(const msg::TickDone& message) {
   return done;
 }
 
-std::string hello_proof(const std::string& token, const Hello& hello, const GuidPrefix& participant) {
+std::string hello_proof(const std::string& token, const Hello& hello, const dds::GuidPrefix& participant) {
   return proof_of_token(
       token, fmt::format("hello\n{}\n{}\n{}\n{}", hello.run_id, hello.component, hello.incarnation, hex(participant)));
 }
@@ -139,4 +139,4 @@ std::optional<Resume> from_wire(const msg::Resume& message) {
   return resume;
 }
 
-}  // namespace constrictor::dds
+}  // namespace constrictor

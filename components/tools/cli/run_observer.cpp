@@ -16,7 +16,7 @@
 namespace constrictor::cli {
 namespace {
 
-namespace wire = dds::barrier_topics;
+namespace wire = barrier_topics;
 constexpr auto kSettle = std::chrono::milliseconds(500);  // until the first messages of all topics have arrived
 constexpr std::int64_t kMostAhead =
     50;  // in any configuration, a component is at most this many ticks ahead of another one

@@ -5,7 +5,7 @@
 #include "cyclone/create_domain.hpp"
 #include "ros_bridge/ros_values.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 using namespace std::chrono_literals;
 
@@ -221,4 +221,4 @@ void Bridge::pass_health(SteadyClock::time_point now) {
 
 bool Bridge::leave() { return !client_.holds_authority() || client_.release(std::chrono::seconds(2)); }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -20,7 +20,7 @@
 #include "ros_bridge/task_desk.hpp"
 #include "ros_bridge/velocity_pilot.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 struct BridgeOptions {
   RunNote run;                      ///< which run
@@ -133,4 +133,4 @@ class Bridge {
   std::string refusal_;  ///< the last reason that was printed
 };
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

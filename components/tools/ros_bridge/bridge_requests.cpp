@@ -3,7 +3,7 @@
 #include "ros_bridge/bridge.hpp"
 #include "ros_bridge/ros_values.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 using namespace std::chrono_literals;
 
@@ -99,4 +99,4 @@ void Bridge::pass_tasks() {
   });
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -27,7 +27,7 @@ using namespace constrictor;
 
 volatile std::sig_atomic_t g_stop = 0;
 
-void print_bridge(const ros::BridgeOptions& options, const std::string& robot, const ros::Node& node) {
+void print_bridge(const ros_bridge::BridgeOptions& options, const std::string& robot, const ros_bridge::Node& node) {
   const RunNote& run = options.run;
   fmt::print("run {} ({}, seed {}, robot {}) is node /{} in ROS_DOMAIN_ID {}{}; Ctrl-C ends the bridge, not the run\n",
              run.domain, run.scenario, run.seed, robot, node.name(), options.ros_domain,
@@ -50,14 +50,14 @@ std::string robot_of(const RunNote& run) {
   return data_path("components/lib/robot/mamba.yaml");
 }
 
-int bridge_run(std::optional<std::uint32_t> domain, ros::BridgeOptions options, std::string robot) {
+int bridge_run(std::optional<std::uint32_t> domain, ros_bridge::BridgeOptions options, std::string robot) {
   options.run = join_run(domain);
   if (robot.empty()) robot = robot_of(options.run);
   const RobotModel model = load_robot(robot);
   const constrictor::Log log("ros_bridge");
-  ros::Bridge bridge(options, model, log);
+  ros_bridge::Bridge bridge(options, model, log);
   print_bridge(options, model.name, bridge.node());
-  while (!g_stop && bridge.over().empty()) bridge.serve(ros::Bridge::SteadyClock::now());
+  while (!g_stop && bridge.over().empty()) bridge.serve(ros_bridge::Bridge::SteadyClock::now());
   if (!bridge.over().empty()) fmt::print("{}\n", bridge.over());
   else if (!bridge.leave()) log.warning("no answer from `input`; authority ends with this process");
   return exit_status::kOk;
@@ -66,7 +66,7 @@ int bridge_run(std::optional<std::uint32_t> domain, ros::BridgeOptions options, 
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::BridgeOptions options;
+  ros_bridge::BridgeOptions options;
   std::optional<std::uint32_t> domain;
   std::string robot;
   std::string level = "operator";
@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   if (const auto status = parse_command_line(app, argc, argv)) return *status;
   options.level = level == "operator" ? msg::kAuthorityOperator : msg::kAuthorityExternal;
-  options.release = distribution == "humble" ? ros::Release::kHumble : ros::Release::kIron;
+  options.release = distribution == "humble" ? ros_bridge::Release::kHumble : ros_bridge::Release::kIron;
   struct sigaction action {};
   action.sa_handler = [](int) { g_stop = 1; };
   ::sigaction(SIGTERM, &action, nullptr);

@@ -7,7 +7,7 @@
 #include "cyclone/endpoint.hpp"
 #include "ros_types.h"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 /// The type hash, as REP 2016 defines it: SHA-256 of names and types of all fields, in hexadecimal.
 template <class T>
@@ -19,7 +19,7 @@ std::string type_user_data() {
   return std::string("typehash=RIHS01_") + kTypeHash<T> + ";";
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge
 
 // The hashes are those that ROS 2's own generator writes for Jazzy and Rolling. The test computes each of them from
 // ros_types.idl, so that a field in a wrong place is noticed.
@@ -48,6 +48,6 @@ std::string type_user_data() {
     return Type##_desc;                                                       \
   }                                                                           \
   template <>                                                                 \
-  inline constexpr const char* constrictor::ros::kTypeHash<Type> = Hash;
+  inline constexpr const char* constrictor::ros_bridge::kTypeHash<Type> = Hash;
 CONSTRICTOR_ROS_TYPES(CONSTRICTOR_ROS_TYPE)
 #undef CONSTRICTOR_ROS_TYPE

@@ -8,7 +8,7 @@
 #include "constrictor/text.hpp"
 #include "ros_bridge/ros_values.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 // Source: diagnostic_msgs/msg/DiagnosticStatus.msg.
@@ -123,4 +123,4 @@ DiagnosticArray Health::report(const BridgeCounts& counts) {
   return message;
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -12,7 +12,7 @@
 #include "constrictor/messages.hpp"
 #include "ros_types.h"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 using DiagnosticArray = diagnostic_msgs_msg_dds__DiagnosticArray_;
 
@@ -70,4 +70,4 @@ class Health {
   std::vector<Status> statuses_;
 };
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -6,7 +6,7 @@
 #include "constrictor/colours.hpp"
 #include "ros_bridge/ros_values.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 // Source: visualization_msgs/msg/Marker.msg.
@@ -172,4 +172,4 @@ Path Drawing::plan(const msg::TaskCommand& command) {
   return path(command.header.time_ns, command.path.x_m, command.path.y_m, follows ? command.path.point_count : 0);
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -9,7 +9,7 @@
 #include "constrictor/messages.hpp"
 #include "ros_types.h"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 using Marker = visualization_msgs_msg_dds__Marker_;
 using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;
@@ -59,4 +59,4 @@ class Drawing {
   std::vector<geometry_msgs_msg_dds__PoseStamped_> poses_;
 };
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

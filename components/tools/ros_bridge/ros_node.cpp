@@ -6,7 +6,7 @@
 
 #include "ros_bridge/ros_values.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 /// The id of a DDS entity as ROS 2 writes it: the 16 bytes of its GUID, then zeros.
@@ -96,4 +96,4 @@ void Node::announce() {
           rmw_dds_common_msg_dds__HumbleGid_>(type);
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -10,7 +10,7 @@
 #include "cyclone/entity.hpp"
 #include "ros_bridge/ros_descriptors.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 /// The releases of ROS 2, as far as they differ in what they exchange about nodes.
 enum class Release {
@@ -97,4 +97,4 @@ class Node {
 /// "sensor_msgs::msg::dds_::JointState_" is "sensor_msgs/msg/JointState" in ROS 2's words.
 [[nodiscard]] std::string ros_type_name(const std::string& dds_type);
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -12,7 +12,7 @@
 #include "robot/kinematics.hpp"
 #include "ros_bridge/ros_values.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 dds_sequence_double values_of(const double* values, std::size_t count) {
@@ -210,4 +210,4 @@ Drive drive_of(const Twist& twist, const DriveConfig& config) {
   return {std::copysign(path_m_s, speed_m_s <= -kStill ? -1.0 : 1.0), std::clamp(wanted_1_m, -limit, limit)};
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -16,7 +16,7 @@
 #include "robot/robot_model.hpp"
 #include "ros_types.h"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 using Clock = rosgraph_msgs_msg_dds__Clock_;
 using JointState = sensor_msgs_msg_dds__JointState_;
@@ -94,4 +94,4 @@ struct Drive {
 /// if the velocity is too low to move, or not finite.
 [[nodiscard]] Drive drive_of(const Twist& twist, const DriveConfig& config = {});
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -11,7 +11,7 @@
 #include "constrictor/reflect.hpp"
 #include "ros_types.h"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
@@ -66,4 +66,4 @@ std::string broken_exposure(const T& message) {
   return reason;
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

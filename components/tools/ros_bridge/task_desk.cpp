@@ -11,7 +11,7 @@
 #include "constrictor/json.hpp"
 #include "constrictor/text.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -159,4 +159,4 @@ std::string task_event_json(const msg::TaskEvent& event) {
                         {"detail", printable(text_of(event.detail))}});
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -12,7 +12,7 @@
 #include "client/goal_tracker.hpp"
 #include "constrictor/messages.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 /// Longer lines are refused: a path of 64 points fits.
 inline constexpr std::size_t kLongestTaskLine = 2000;
@@ -82,4 +82,4 @@ class TaskDesk {
 /// An event as JSON: time_s, task, event, goal, goal_state, colour, object, detail.
 [[nodiscard]] std::string task_event_json(const msg::TaskEvent& event);
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

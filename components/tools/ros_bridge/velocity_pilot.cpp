@@ -1,6 +1,6 @@
 #include "ros_bridge/velocity_pilot.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 constexpr double kAfterRefusal_s = 1.0;
 constexpr double kAfterSilence_s = 0.5;
@@ -69,4 +69,4 @@ std::optional<VelocityPilot::Ask> VelocityPilot::next(bool connected, bool steer
   return ask;
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -7,7 +7,7 @@
 #include "constrictor/messages.hpp"
 #include "ros_bridge/ros_translator.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 /// Repeats the request for the newest velocity until `input` grants it. All times are of one steady clock [s].
 class VelocityPilot {
@@ -49,4 +49,4 @@ class VelocityPilot {
   double asked_s_ = 0.0;
 };
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -10,7 +10,7 @@
 #include "bench/measure_main.hpp"
 #include "bench/peg_fields/peg_picture.hpp"
 
-namespace constrictor::pegs {
+namespace constrictor::peg_fields {
 namespace {
 
 constexpr std::uint64_t kFirstSeed = 1;  // no seed of these was used while the method was made
@@ -100,10 +100,10 @@ void measure(const std::filesystem::path& robot_file, const std::filesystem::pat
 }
 
 }  // namespace
-}  // namespace constrictor::pegs
+}  // namespace constrictor::peg_fields
 
 int main(int argc, char** argv) {
   return constrictor::bench::measure_main(argc, argv, "peg_fields",
                                           "drive the simulated robot through random fields of pegs",
-                                          "peg_fields.png and peg_fields.json", constrictor::pegs::measure);
+                                          "peg_fields.png and peg_fields.json", constrictor::peg_fields::measure);
 }

@@ -5,7 +5,7 @@
 
 #include "component/random.hpp"
 
-namespace constrictor::pegs {
+namespace constrictor::peg_fields {
 namespace {
 
 using Eigen::Vector2d;
@@ -42,4 +42,4 @@ Scenario draw_field(const FieldSpec& spec, double body_length_m, double body_rad
   return scene;
 }
 
-}  // namespace constrictor::pegs
+}  // namespace constrictor::peg_fields

@@ -5,7 +5,7 @@
 
 #include "sim/scenario_loader/scenario.hpp"
 
-namespace constrictor::pegs {
+namespace constrictor::peg_fields {
 
 /// The pegs stand in a strip along the x axis of W, on which the robot starts straight with its head in the origin.
 struct FieldSpec {
@@ -24,4 +24,4 @@ struct FieldSpec {
 [[nodiscard]] Scenario draw_field(const FieldSpec& spec, double body_length_m, double body_radius_m,
                                   std::uint64_t seed);
 
-}  // namespace constrictor::pegs
+}  // namespace constrictor::peg_fields

@@ -7,7 +7,7 @@
 
 #include "sim/figure/canvas.hpp"
 
-namespace constrictor::pegs {
+namespace constrictor::peg_fields {
 namespace {
 
 using figure::Canvas;
@@ -75,4 +75,4 @@ void draw(const std::filesystem::path& file, const std::vector<Panel>& panels, d
   std::ofstream(file, std::ios::binary) << canvas.finish();
 }
 
-}  // namespace constrictor::pegs
+}  // namespace constrictor::peg_fields

@@ -7,7 +7,7 @@
 
 #include "bench/peg_fields/peg_trial.hpp"
 
-namespace constrictor::pegs {
+namespace constrictor::peg_fields {
 
 struct Panel {
   std::string title;
@@ -19,4 +19,4 @@ struct Panel {
 /// pale to dark; a square marks the head.
 void draw(const std::filesystem::path& file, const std::vector<Panel>& panels, double body_radius_m);
 
-}  // namespace constrictor::pegs
+}  // namespace constrictor::peg_fields

@@ -6,7 +6,7 @@
 
 #include "sim/physics/sensors.hpp"
 
-namespace constrictor::pegs {
+namespace constrictor::peg_fields {
 namespace {
 
 using Eigen::Vector2d;
@@ -87,4 +87,4 @@ Course run(const RobotModel& robot_of_file, const FieldSpec& field, std::uint64_
   return course;
 }
 
-}  // namespace constrictor::pegs
+}  // namespace constrictor::peg_fields

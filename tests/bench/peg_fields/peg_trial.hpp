@@ -9,7 +9,7 @@
 #include "bench/method_driver.hpp"
 #include "bench/peg_fields/peg_field.hpp"
 
-namespace constrictor::pegs {
+namespace constrictor::peg_fields {
 
 struct Trial {
   MethodTrial method;
@@ -41,4 +41,4 @@ struct Course {
 /// the method does not accept the trial.
 [[nodiscard]] Course run(const RobotModel& robot, const FieldSpec& field, std::uint64_t seed, const Trial& trial);
 
-}  // namespace constrictor::pegs
+}  // namespace constrictor::peg_fields

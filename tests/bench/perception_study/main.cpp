@@ -7,7 +7,7 @@
 #include "bench/perception_study/plot.hpp"
 #include "configuration/whole_file.hpp"
 
-namespace constrictor::study {
+namespace constrictor::perception_study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ void draw_all(const std::vector<Factor>& factors, const fs::path& folder, const 
 }
 
 }  // namespace
-}  // namespace constrictor::study
+}  // namespace constrictor::perception_study
 
 int main(int argc, char** argv) {
   CLI::App app("list the factors of the perception study, or draw the curves of its evaluations");
@@ -41,9 +41,9 @@ int main(int argc, char** argv) {
   app.add_option("--title", title, "heading of the picture");
   CLI11_PARSE(app, argc, argv);
   try {
-    const auto all = constrictor::study::read_factors(factors);
-    if (list) constrictor::study::list(all);
-    if (!draw.empty()) constrictor::study::draw_all(all, draw, title);
+    const auto all = constrictor::perception_study::read_factors(factors);
+    if (list) constrictor::perception_study::list(all);
+    if (!draw.empty()) constrictor::perception_study::draw_all(all, draw, title);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "perception_study: {}\n", error.what());

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace constrictor::study {
+namespace constrictor::perception_study {
 namespace {
 
 using figure::Align;
@@ -154,4 +154,4 @@ std::string draw(figure::Format format, const std::string& title, const std::vec
   return canvas.finish();
 }
 
-}  // namespace constrictor::study
+}  // namespace constrictor::perception_study

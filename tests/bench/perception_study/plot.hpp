@@ -7,7 +7,7 @@
 #include "bench/perception_study/study.hpp"
 #include "sim/figure/canvas.hpp"
 
-namespace constrictor::study {
+namespace constrictor::perception_study {
 
 /// The bytes of the picture. Each panel has three strips over the levels: the share of missions that succeeded with its
 /// 95 % interval, the distance of dropped objects from the centre of their zone, and the time of successful missions,
@@ -15,4 +15,4 @@ namespace constrictor::study {
 [[nodiscard]] std::string draw(figure::Format format, const std::string& title, const std::vector<Factor>& factors,
                                const std::vector<std::vector<LevelResult>>& results);
 
-}  // namespace constrictor::study
+}  // namespace constrictor::perception_study

@@ -12,7 +12,7 @@
 
 #include "configuration/configuration.hpp"
 
-namespace constrictor::study {
+namespace constrictor::perception_study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -158,4 +158,4 @@ std::string to_markdown(const std::vector<Factor>& factors, const std::vector<st
   return text;
 }
 
-}  // namespace constrictor::study
+}  // namespace constrictor::perception_study

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace constrictor::study {
+namespace constrictor::perception_study {
 
 /// One error of perception or of the world that is made stronger from level to level: an entry of factors.yaml.
 struct Factor {
@@ -54,4 +54,4 @@ inline constexpr const char* kReferenceFolder = "reference";
 [[nodiscard]] std::string to_markdown(const std::vector<Factor>& factors,
                                       const std::vector<std::vector<LevelResult>>& results);
 
-}  // namespace constrictor::study
+}  // namespace constrictor::perception_study

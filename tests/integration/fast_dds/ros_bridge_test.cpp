@@ -174,7 +174,7 @@ TEST_F(RosBridge, AVelocityFromRosTakesAuthorityAndItsWritersEndReleasesIt) {
   };
   ASSERT_TRUE(until([&] { return authority.level == msg::kAuthorityPlanner; }, 60s));
   // An operator has authority: the constant velocity is refused. It is obeyed when the operator releases authority.
-  const dds::RequestWriter hand(here.participant(), 0);
+  const RequestWriter hand(here.participant(), 0);
   msg::Request wish{};
   wish.robot_id = 1;
   dds::set_text(wish.source, "hand");

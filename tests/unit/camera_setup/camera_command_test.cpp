@@ -11,7 +11,7 @@
 #include "support/temporary_folder.hpp"
 #include "video/calibration.hpp"
 
-namespace constrictor::testing {
+namespace constrictor::camera_setup {
 namespace {
 
 using namespace std::chrono_literals;
@@ -21,20 +21,20 @@ const std::string kPipeline =
     "videotestsrc is-live=true pattern=ball ! video/x-raw,width=320,height=240,framerate=10/1 ! videoconvert ! appsink";
 
 TEST(CameraCommand, AMountWithoutABoardInViewSaysWhatItSeesAndEnds) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const std::string file = (folder.path() / "camera.yaml").string();
   const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   std::ofstream(file) << video::calibration_text(video::calibration_of(robot.camera), false, "this test");
   const auto mount = [&](const std::string& within) {
-    return Process({program("camera_setup"), "mount", "--source", kPipeline, "--calibration", file, "--at", "0.36,0",
-                    "--board", "6x5", "--square", "0.04", "--within", within});
+    return testing::Process({testing::program("camera_setup"), "mount", "--source", kPipeline, "--calibration", file,
+                             "--at", "0.36,0", "--board", "6x5", "--square", "0.04", "--within", within});
   };
-  Process bounded = mount("3");
+  testing::Process bounded = mount("3");
   EXPECT_EQ(bounded.wait(60s), 1) << bounded.errors();
   EXPECT_NE(bounded.output().find("no board of 6 x 5 corners in view: 1 pictures of 320 x 240"), std::string::npos)
       << bounded.output();
   EXPECT_NE(bounded.errors().find("within 3 s (--within)"), std::string::npos) << bounded.errors();
-  Process stopped = mount("600");
+  testing::Process stopped = mount("600");
   ASSERT_TRUE(stopped.wait_for("no board", 30s)) << stopped.errors();
   stopped.signal(SIGINT);
   EXPECT_EQ(stopped.wait(30s), 128 + SIGINT) << stopped.errors();
@@ -49,7 +49,7 @@ TEST(CameraCommand, EachSubcommandShowsAnExampleOfItself) {
 }
 
 TEST(CameraCommand, AFileThatCannotBeWrittenIsRefusedBeforeTheSourceIsOpened) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const std::string file = (folder.path() / "camera.yaml").string();
   const RobotModel robot = load_robot(data_path("components/lib/robot/mamba.yaml"));
   std::ofstream(file) << video::calibration_text(video::calibration_of(robot.camera), false, "this test");
@@ -59,9 +59,9 @@ TEST(CameraCommand, AFileThatCannotBeWrittenIsRefusedBeforeTheSourceIsOpened) {
            {"calibrate", "--square", "0.03", "--out", folder.path().string()},
            {"mount", "--square", "0.03", "--calibration", file, "--at", "0.36,0", "--out", nowhere},
            {"colours", "--sample", "blue=0,0,9,9", "--out", nowhere}}) {
-    words.insert(words.begin(), program("camera_setup"));
+    words.insert(words.begin(), testing::program("camera_setup"));
     words.insert(words.end(), {"--source", kPipeline});
-    Process process(std::move(words));
+    testing::Process process(std::move(words));
     EXPECT_EQ(process.wait(20s), 1) << process.output() << process.errors();
     EXPECT_NE(process.errors().find("--out: "), std::string::npos) << process.errors();
     EXPECT_EQ((process.output() + process.errors()).find("320 x 240"), std::string::npos) << "the source was opened";
@@ -70,9 +70,10 @@ TEST(CameraCommand, AFileThatCannotBeWrittenIsRefusedBeforeTheSourceIsOpened) {
 }
 
 TEST(CameraCommand, ShowWritesPicturesAndRefusesOtherEndings) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const auto show = [&](const std::string& name, int status) -> std::string {
-    Process process({program("camera_setup"), "show", "--source", kPipeline, "--out", (folder.path() / name).string()});
+    testing::Process process(
+        {testing::program("camera_setup"), "show", "--source", kPipeline, "--out", (folder.path() / name).string()});
     EXPECT_EQ(process.wait(60s), status) << process.output() << process.errors();
     return process.output() + process.errors();
   };
@@ -87,9 +88,9 @@ TEST(CameraCommand, ShowWritesPicturesAndRefusesOtherEndings) {
 
 TEST(CameraCommand, ShowCountsMissingFramesOnlyOfARateThatIsGiven) {
   const auto show = [&](std::vector<std::string> more) -> std::string {
-    std::vector<std::string> words = {program("camera_setup"), "show", "--source", kPipeline};
+    std::vector<std::string> words = {testing::program("camera_setup"), "show", "--source", kPipeline};
     words.insert(words.end(), more.begin(), more.end());
-    Process process(std::move(words));
+    testing::Process process(std::move(words));
     EXPECT_EQ(process.wait(60s), 0) << process.errors();
     return process.output();
   };
@@ -102,9 +103,9 @@ TEST(CameraCommand, ShowCountsMissingFramesOnlyOfARateThatIsGiven) {
 }
 
 TEST(CameraCommand, ASourceThatCannotBeOpenedHasAStatusOfItsOwn) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   for (const char* source : {"http://127.0.0.1:9/stream", "/dev/video_that_is_not_there"}) {
-    Process process({program("camera_setup"), "show", "--source", source});
+    testing::Process process({testing::program("camera_setup"), "show", "--source", source});
     EXPECT_EQ(process.wait(60s), 70) << process.errors();
     EXPECT_NE(process.errors().find("the source could not be opened for 5 s"), std::string::npos) << process.errors();
     EXPECT_EQ(process.errors().find("constrictor camera show"), std::string::npos) << process.errors();
@@ -112,4 +113,4 @@ TEST(CameraCommand, ASourceThatCannotBeOpenedHasAStatusOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor::camera_setup

@@ -14,7 +14,7 @@
 #include "robot/robot_model.hpp"
 #include "support/process.hpp"
 
-namespace constrictor::testing {
+namespace constrictor::camera_setup {
 namespace {
 
 using camera_setup::Board;
@@ -150,7 +150,7 @@ TEST(Mount, AWrongSizeOfTheSquaresAndAWrongOrderOfTheNumbersAreRefused) {
   const Board board{6, 5, 0.04};
   const camera_setup::BoardOnGround place{0.36, 0.0, 0.0};
   const Eigen::Isometry3d X_HB = board_on_ground(board, place, robot.module_radius_m);
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const std::string picture = (folder.path() / "board.png").string(), file = (folder.path() / "camera.yaml").string();
   ASSERT_TRUE(cv::imwrite(picture, BoardPainter(lens).draw(board, camera_mount(robot.camera).inverse() * X_HB)));
   const std::string before = video::calibration_text(lens, false, "this test");
@@ -161,7 +161,7 @@ TEST(Mount, AWrongSizeOfTheSquaresAndAWrongOrderOfTheNumbersAreRefused) {
   };
   const auto mount = [&](const std::string& numbers, const std::string& square, std::vector<std::string> more,
                          int status) -> std::string {
-    std::vector<std::string> words = {program("camera_setup"),
+    std::vector<std::string> words = {testing::program("camera_setup"),
                                       "mount",
                                       "--source",
                                       picture,
@@ -174,7 +174,7 @@ TEST(Mount, AWrongSizeOfTheSquaresAndAWrongOrderOfTheNumbersAreRefused) {
                                       "--square",
                                       square};
     words.insert(words.end(), more.begin(), more.end());
-    Process process(std::move(words));
+    testing::Process process(std::move(words));
     EXPECT_EQ(process.wait(60s), status) << process.output() << process.errors();
     return process.output() + process.errors();
   };
@@ -192,12 +192,12 @@ TEST(Mount, AWrongSizeOfTheSquaresAndAWrongOrderOfTheNumbersAreRefused) {
 }
 
 TEST(CameraSetup, CalibratesFromAFolderOfPicturesAndRefusesNonsense) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const auto place = folder.path() / "pictures";
   std::filesystem::create_directory(place);
   const auto run = [&](std::vector<std::string> arguments, int status) -> std::string {
-    arguments.insert(arguments.begin(), program("camera_setup"));
-    Process process(std::move(arguments));
+    arguments.insert(arguments.begin(), testing::program("camera_setup"));
+    testing::Process process(std::move(arguments));
     EXPECT_EQ(process.wait(60s), status) << process.output() << process.errors();
     return process.output() + process.errors();
   };
@@ -229,4 +229,4 @@ TEST(CameraSetup, CalibratesFromAFolderOfPicturesAndRefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor::camera_setup

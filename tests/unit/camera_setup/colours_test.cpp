@@ -10,7 +10,7 @@
 #include "perception/perception_config.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace constrictor::testing {
+namespace constrictor::camera_setup {
 namespace {
 
 using camera_setup::ColourSample;
@@ -39,7 +39,7 @@ std::map<std::string, ColourSample> samples() {
 }
 
 TEST(TaughtColours, AreRecognisedByPerceptionAndTheGroundIsNot) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const auto file = folder.path() / "perception.yaml";
   const auto result = teach_colours(samples());
   std::ofstream(file) << result.yaml;
@@ -106,4 +106,4 @@ TEST(TaughtColours, RefusesWhatCannotBeToldApart) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor::camera_setup

@@ -9,7 +9,7 @@
 #include "camera_setup/board.hpp"
 #include "video/calibration.hpp"
 
-namespace constrictor::testing {
+namespace constrictor::camera_setup {
 
 /// The direction (x, y, 1) of the ray through a pixel (centres at +0.5). Undoes the distortion by
 /// repetition.
@@ -73,4 +73,4 @@ class BoardPainter {
   std::vector<Eigen::Vector3d> rays_;
 };
 
-}  // namespace constrictor::testing
+}  // namespace constrictor::camera_setup

@@ -153,7 +153,7 @@ class CheckedTranslator {
   std::uint64_t translated = 0;
 
  private:
-  static void check(const ros::MarkerArray& array, const std::string& frame) {
+  static void check(const ros_bridge::MarkerArray& array, const std::string& frame) {
     ASSERT_GE(array.markers._length, 1u);
     for (std::uint32_t i = 0; i < array.markers._length; ++i) {
       const auto& marker = array.markers._buffer[i];
@@ -165,7 +165,7 @@ class CheckedTranslator {
       for (std::uint32_t k = 0; k < marker.points._length; ++k) ASSERT_TRUE(finite(marker.points._buffer[k]));
     }
   }
-  static void check(const ros::Path& path, std::size_t most) {
+  static void check(const ros_bridge::Path& path, std::size_t most) {
     ASSERT_TRUE(in_time(path.header.stamp));
     ASSERT_LE(path.poses._length, most);
     for (std::uint32_t i = 0; i < path.poses._length; ++i) {
@@ -175,11 +175,11 @@ class CheckedTranslator {
   }
   template <class T>
   bool fit(const T& message) {
-    const bool fits = ros::unfit(message).empty();
+    const bool fits = ros_bridge::unfit(message).empty();
     translated += fits;
     return fits;
   }
-  static void check(const ros::TFMessage& tree, std::size_t count) {
+  static void check(const ros_bridge::TFMessage& tree, std::size_t count) {
     ASSERT_EQ(tree.transforms._length, count);
     for (std::size_t i = 0; i < count; ++i) {
       const auto& t = tree.transforms._buffer[i];
@@ -189,8 +189,8 @@ class CheckedTranslator {
   }
 
   std::size_t joints_, modules_;
-  ros::Translator translator_;
-  ros::Drawing drawing_{0.035};
+  ros_bridge::Translator translator_;
+  ros_bridge::Drawing drawing_{0.035};
   msg::JointState last_joints_{};
   msg::ImuState last_imu_{};
 };

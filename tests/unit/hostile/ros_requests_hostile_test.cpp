@@ -39,13 +39,13 @@ std::string hostile_line(HostileFiller& filler) {
 
 TEST(HostileRosBridge, TaskLinesAreValidRequestsOrRefusedWithAPrintableReason) {
   HostileFiller filler(kSeed);
-  ros::TaskDesk desk;
+  ros_bridge::TaskDesk desk;
   std::uint64_t requests = 0;
   for (std::uint64_t i = 0; i < kMessages; ++i) {
     const std::string line = hostile_line(filler);
     SCOPED_TRACE(line.substr(0, 200));
-    const auto parsed = ros::parse_task_line(line);
-    if (const auto* what = std::get_if<ros::TaskLine>(&parsed)) {
+    const auto parsed = ros_bridge::parse_task_line(line);
+    if (const auto* what = std::get_if<ros_bridge::TaskLine>(&parsed)) {
       ++requests;
       msg::Request request = what->request;
       request.level = msg::kAuthorityOperator;
@@ -66,7 +66,7 @@ TEST(HostileRosBridge, TaskLinesAreValidRequestsOrRefusedWithAPrintableReason) {
 
 TEST(HostileRosBridge, DiagnosticsOfAbsurdStatusesStayBounded) {
   HostileFiller filler(kSeed);
-  ros::Health health("mamba");
+  ros_bridge::Health health("mamba");
   for (std::uint64_t i = 0; i < kMessages; ++i) {
     filler.begin_message();
     msg::ComponentStatus status{};
@@ -94,8 +94,8 @@ TEST(HostileRosBridge, RequestsAreWithinTheDrivesLimitsAndBlockedByAnEmergencySt
                                 std::numeric_limits<double>::infinity(),
                                 std::numeric_limits<double>::quiet_NaN()};
   constexpr double kHoldAfter_s = 0.5;
-  const ros::DriveConfig limits;
-  ros::VelocityPilot pilot(kHoldAfter_s);
+  const ros_bridge::DriveConfig limits;
+  ros_bridge::VelocityPilot pilot(kHoldAfter_s);
   HostileFiller filler(kSeed);
   double now_s = 1000.0;
   double heard_s = -1e9;  // of the last velocity
@@ -106,13 +106,13 @@ TEST(HostileRosBridge, RequestsAreWithinTheDrivesLimitsAndBlockedByAnEmergencySt
     now_s += filler.roll(50) == 0 ? 1.0 : 0.02;
     if (now_s - heard_s > kHoldAfter_s) stopped = false;
     if (filler.roll(3) != 0) {
-      ros::Twist twist{};
+      ros_bridge::Twist twist{};
       for (double* value :
            {&twist.linear.x, &twist.linear.y, &twist.linear.z, &twist.angular.x, &twist.angular.y, &twist.angular.z}) {
         *value = kAbsurd[filler.roll(std::size(kAbsurd))];
       }
-      const ros::Drive drive = ros::drive_of(twist, limits);
-      if (drive == ros::Drive{}) stopped = false;
+      const ros_bridge::Drive drive = ros_bridge::drive_of(twist, limits);
+      if (drive == ros_bridge::Drive{}) stopped = false;
       pilot.command(drive, now_s);
       heard_s = now_s;
     }
@@ -131,7 +131,7 @@ TEST(HostileRosBridge, RequestsAreWithinTheDrivesLimitsAndBlockedByAnEmergencySt
     ASSERT_TRUE(ask->kind == msg::kRequestMotion || ask->kind == msg::kRequestRelease);
     ASSERT_TRUE(std::abs(ask->drive.speed_m_s) <= limits.max_speed_m_s) << ask->drive.speed_m_s;
     ASSERT_TRUE(std::abs(ask->drive.curvature_1_m) <= limits.max_curvature_1_m) << ask->drive.curvature_1_m;
-    ASSERT_TRUE(!stopped || ask->drive == ros::Drive{})
+    ASSERT_TRUE(!stopped || ask->drive == ros_bridge::Drive{})
         << "motion after an emergency stop, without a pause of the velocity";
   }
   std::printf("velocity pilot: %llu motions and %llu releases requested, %llu times blocked\n",

@@ -8,15 +8,15 @@
 namespace constrictor {
 namespace {
 
-describe::Model model_of(const std::string& text) {
-  describe::Model model;
-  describe::parse_idl("made_up.idl", text, model);
+generator::Model model_of(const std::string& text) {
+  generator::Model model;
+  generator::parse_idl("made_up.idl", text, model);
   return model;
 }
 
 std::string refusal_of(const std::string& text) {
   try {
-    static_cast<void>(describe::constant_groups(model_of(text)));
+    static_cast<void>(generator::constant_groups(model_of(text)));
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -24,7 +24,7 @@ std::string refusal_of(const std::string& text) {
 }
 
 TEST(ConstantGroups, AreTheConstantsThatACommentNames) {
-  const auto groups = describe::constant_groups(
+  const auto groups = generator::constant_groups(
       model_of("const octet kSizeSmall = 0;\nconst octet kSizeVeryLarge = 1;\nconst long kMaxSizes = 9;\n"
                "const octet kSidewaysNo = 0;\n"
                "@final struct S {\n  octet size;  // kSize...; of the box\n  octet way;  // [-] one of kSideways...\n"

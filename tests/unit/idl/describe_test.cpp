@@ -19,8 +19,8 @@
 namespace constrictor {
 namespace {
 
-using describe::Model;
-using describe::parse_idl;
+using generator::Model;
+using generator::parse_idl;
 
 Model parsed(const std::string& text) {
   Model model;

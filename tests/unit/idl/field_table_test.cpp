@@ -5,7 +5,7 @@
 
 #include "constrictor/messages.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 const FieldEntry& field(std::string_view type, std::string_view name) {
@@ -37,4 +37,4 @@ TEST(FieldTable, ATextIsNoArrayAndAnArrayWithoutACountIsWhole) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

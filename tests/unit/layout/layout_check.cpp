@@ -28,20 +28,6 @@ const std::regex& ground_truth() {
   return words;
 }
 
-std::vector<fs::path> files_below(const fs::path& root, const std::vector<std::string>& tops,
-                                  const std::vector<std::string>& extensions) {
-  std::vector<fs::path> files;
-  for (const auto& top : tops) {
-    if (!fs::exists(root / top)) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
-      const std::string extension = entry.path().extension().string();
-      if (std::count(extensions.begin(), extensions.end(), extension) > 0) files.push_back(entry.path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -83,6 +69,20 @@ std::vector<std::pair<char, std::string>> symbols_of(const std::string& nm) {
 }
 
 }  // namespace
+
+std::vector<fs::path> files_below(const fs::path& root, const std::vector<std::string>& tops,
+                                  const std::vector<std::string>& extensions) {
+  std::vector<fs::path> files;
+  for (const auto& top : tops) {
+    if (!fs::exists(root / top)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const std::string extension = entry.path().extension().string();
+      if (std::count(extensions.begin(), extensions.end(), extension) > 0) files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
 
 std::vector<std::string> source_violations(const fs::path& root) {
   static const std::regex include_line("^\\s*#\\s*include\\s*[<\"]([^>\"]+)[>\"]");

@@ -8,9 +8,18 @@
 
 namespace constrictor::testing {
 
+/// The files below the folders `tops` of `root` with one of these extensions (".hpp"), in order.
+std::vector<std::filesystem::path> files_below(const std::filesystem::path& root, const std::vector<std::string>& tops,
+                                               const std::vector<std::string>& extensions);
+
 /// Every violation in the source tree `root`, as "components/x/y.cpp:12: why": Cyclone's headers outside the libraries
 /// that call it, includes by relative path, names of ground truth in code that runs on a robot.
 std::vector<std::string> source_violations(const std::filesystem::path& root);
+
+/// Every opened namespace that is not `constrictor`, the namespace of a folder in which the file is, or one of the
+/// exceptions in CONTRIBUTING.md (Names), as "file:12: opens namespace NAME". The folder examples/ is left out, because
+/// its projects are users of this one.
+std::vector<std::string> namespace_violations(const std::filesystem::path& root);
 
 /// Source files of more than 300 lines, unless the README of their folder says "`NAME` is longer than 300 lines
 /// because" and the reason.

@@ -1,6 +1,5 @@
 // The project keeps its own rules of layout, and the checker finds every violation of them.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -12,36 +11,13 @@
 #include <utility>
 
 #include "layout_check.hpp"
+#include "source_tree.hpp"
 #include "support/project.hpp"
 
 namespace constrictor::testing {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const auto& line : lines) text += line + "\n";
-  return text;
-}
-
-/// A source tree made for a test; its destructor removes it.
-class Tree {
- public:
-  Tree() : root_(fs::temp_directory_path() / ("constrictor_layout_" + std::to_string(::getpid()))) {}
-  ~Tree() { fs::remove_all(root_); }
-  Tree(const Tree&) = delete;
-  Tree& operator=(const Tree&) = delete;
-  void add(const std::string& file, const std::string& text) const {
-    fs::create_directories((root_ / file).parent_path());
-    std::ofstream(root_ / file) << text;
-  }
-  [[nodiscard]] const fs::path& root() const { return root_; }
-  [[nodiscard]] std::string violations() const { return text_of(source_violations(root_)); }
-
- private:
-  fs::path root_;
-};
 
 TEST(Layout, FoldersDependOnlyOnWhatTheyMay) { EXPECT_EQ(text_of(source_violations(source_path())), ""); }
 
@@ -190,7 +166,7 @@ TEST(LayoutChecker, AcceptsAGoodTree) {
            "#include \"control/control.hpp\"\n#include <vector>\n// WorldState is not for us\n");
   tree.add("components/lib/cyclone/domain.hpp", "#include <dds/dds.h>\n");
   tree.add("sim/physics/physics.cpp", "#include \"sim/world/world.hpp\"\nauto x = topics::kWorldState;\n");
-  EXPECT_EQ(tree.violations(), "");
+  EXPECT_EQ(text_of(source_violations(tree.root())), "");
 }
 
 TEST(LayoutChecker, FindsEachForbiddenLine) {
@@ -201,7 +177,7 @@ TEST(LayoutChecker, FindsEachForbiddenLine) {
   tree.add("components/control/d.cpp", "open(setup.scenario_file);\n");
   tree.add("components/tools/cli/e.cpp", "#include <dds/ddsc/dds_public_qos.h>\n");
   tree.add("sim/camera/f.cpp", "#include \"dds/dds.h\"\n");
-  EXPECT_EQ(tree.violations(),
+  EXPECT_EQ(text_of(source_violations(tree.root())),
             "components/control/a.cpp:1: includes dds/dds.h\n"
             "components/control/b.cpp:2: includes ../navigation/navigation.hpp by its place, not by its name\n"
             "components/control/c.cpp:1: uses kWorldState, which a robot does not have\n"

@@ -4,7 +4,7 @@
 #include "bench/peg_fields/peg_trial.hpp"
 #include "support/project.hpp"
 
-namespace constrictor::pegs {
+namespace constrictor::peg_fields {
 namespace {
 
 TEST(PegFields, PegsAreApartAndDoNotTouchTheBodyAtTheStart) {
@@ -35,4 +35,4 @@ TEST(PegFields, ContactControlMovesTheBodyWhereUndulationDoesNot) {
 }
 
 }  // namespace
-}  // namespace constrictor::pegs
+}  // namespace constrictor::peg_fields

@@ -10,7 +10,7 @@
 #include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace constrictor::study {
+namespace constrictor::perception_study {
 namespace {
 
 class Study : public ::testing::Test {
@@ -139,4 +139,4 @@ TEST_F(Study, DrawsAPanelForEachErrorThatHasResults) {
 }
 
 }  // namespace
-}  // namespace constrictor::study
+}  // namespace constrictor::perception_study

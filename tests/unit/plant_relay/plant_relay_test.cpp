@@ -1,7 +1,7 @@
 // plant_relay with hardware that the test plays: posture first, refusals, loss and return, stops.
 #include "relay_rig.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 TEST_F(Relay, SendsNothingBeforeThePostureIsKnownAndThenThisPosture) {
@@ -205,4 +205,4 @@ TEST_F(Relay, BeginsANewSessionAfterAReset) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

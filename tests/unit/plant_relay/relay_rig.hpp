@@ -21,9 +21,9 @@
 #include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 
-inline constexpr std::size_t kJoints = Commander::kJoints;
+inline constexpr std::size_t kJoints = testing::Commander::kJoints;
 inline constexpr std::int64_t kPeriod_ns = 20'000'000;
 
 class Relay : public ::testing::Test {
@@ -32,7 +32,7 @@ class Relay : public ::testing::Test {
     std::ofstream(folder_.path() / "relay.yaml") << config;
     constrictor::Setup setup;
     setup.robot_file = testing::robot_path("mamba");
-    const ComponentFactory control = commander(
+    const ComponentFactory control = testing::commander(
         [this](std::int64_t tick, msg::JointCommand& command) { return command_ && command_(tick, command); });
     run_ = std::make_unique<LocalRun>(
         std::vector<ComponentFactory>{make_plant_relay_factory(), control}, setup,
@@ -76,15 +76,15 @@ class Relay : public ::testing::Test {
       run_->advance(1);
     }
   }
-  static CommandAt bend(double angle_rad) {
+  static testing::CommandAt bend(double angle_rad) {
     return [angle_rad](std::int64_t, msg::JointCommand& command) {
       command.position_rad[4] = angle_rad;
       return true;
     };
   }
 
-  const TemporaryFolder folder_;
-  CommandAt command_;
+  const testing::TemporaryFolder folder_;
+  testing::CommandAt command_;
   std::unique_ptr<LocalRun> run_;
   std::vector<msg::HardwareJointCommand> sent_;
   std::vector<double> angles_rad_;
@@ -94,4 +94,4 @@ class Relay : public ::testing::Test {
   std::int64_t time_ns_ = 5;
 };
 
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -1,10 +1,10 @@
 // plant_relay and commands that demand torques.
 #include "relay_rig.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
-CommandAt push(double torque_nm) {
+testing::CommandAt push(double torque_nm) {
   return [=](std::int64_t, msg::JointCommand& command) {
     command.mode = msg::kServoTorque;
     command.torque_nm[4] = torque_nm;
@@ -57,4 +57,4 @@ TEST_F(RelayWithTorques, AFaultOfTheHardwareEndsTheTorquesAndHolds) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -13,7 +13,7 @@
 #include "recording/message_cdr.hpp"
 #include "unit/idl/random_message.hpp"
 
-namespace constrictor::testing {
+namespace constrictor::mcap {
 namespace {
 
 class MessageCdr : public ::testing::Test {
@@ -63,7 +63,7 @@ class MessageCdr : public ::testing::Test {
 TEST_F(MessageCdr, IsThatOfCyclone) {
   for_each_topic_type([&]<class T>() {
     const Cyclone<T> cyclone(domain_.participant());
-    RandomFiller filler(17);
+    testing::RandomFiller filler(17);
     for (int i = 0; i < 50; ++i) {
       T message{};
       Description<T>::visit(message, filler);
@@ -101,7 +101,7 @@ TEST_F(MessageCdr, HasTheSchemaThatTheDescriptionOfTheTypeGives) {
 
 TEST_F(MessageCdr, RefusesBytesThatAreNotOneMessage) {
   for_each_topic_type([&]<class T>() {
-    RandomFiller filler(23);
+    testing::RandomFiller filler(23);
     T message{};
     Description<T>::visit(message, filler);
     const std::string cdr = cdr_of(message);
@@ -130,4 +130,4 @@ TEST_F(MessageCdr, RefusesBytesThatAreNotOneMessage) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor::mcap

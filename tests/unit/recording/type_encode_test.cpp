@@ -14,7 +14,7 @@
 #include "recording/message_cdr.hpp"
 #include "unit/idl/random_message.hpp"
 
-namespace constrictor::testing {
+namespace constrictor::dds {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -49,7 +49,7 @@ TEST_F(TypeEncode, WhatWasDecodedBecomesTheSameBytesForEachType) {
     if (!seen.insert(Description<T>::kName).second) return;
     const auto type = tree(Description<T>::kName);
     ASSERT_TRUE(type) << Description<T>::kName;
-    RandomFiller filler(29);
+    testing::RandomFiller filler(29);
     for (int i = 0; i < 20; ++i) {
       T message{};
       Description<T>::visit(message, filler);
@@ -141,4 +141,4 @@ TEST(TypeEncodeForeign, ArraysOfOtherTypesNeedAllTheirElementsAndUnionsAreNotWri
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor::dds

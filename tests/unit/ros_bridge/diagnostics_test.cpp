@@ -7,7 +7,7 @@
 #include "constrictor/text.hpp"
 #include "ros_bridge/ros_diagnostics.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 // Source: diagnostic_msgs/msg/DiagnosticStatus.msg.
@@ -116,4 +116,4 @@ TEST_F(RosDiagnostics, TheBridgeCountsWhatItDropsAndRefuses) {
 }
 
 }  // namespace
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

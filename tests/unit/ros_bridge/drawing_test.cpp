@@ -9,7 +9,7 @@
 
 #include "ros_bridge/ros_drawing.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 constexpr double kHead_m = 0.035;
@@ -181,4 +181,4 @@ TEST(RosDrawing, RefusesWhatRosCannotRepresent) {
 }
 
 }  // namespace
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

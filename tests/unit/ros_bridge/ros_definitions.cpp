@@ -11,7 +11,7 @@
 #include "constrictor/hex.hpp"
 #include "constrictor/sha256.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 using Count = RosField::Count;
@@ -137,4 +137,4 @@ std::string ros_type_hash(const std::string& message, const RosDefinitions& defi
   return hex(sha256(std::as_bytes(std::span(json))));
 }
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 
 /// One field of a message, in the words of .msg files: "float64[36] covariance", "string<=256 node_name".
 struct RosField {
@@ -32,4 +32,4 @@ std::vector<RosField> read_ros_msg(const std::string& text, const std::string& p
 /// The type hash of ROS 2 (REP 2016, "RIHS01"), in hexadecimal and without prefix.
 std::string ros_type_hash(const std::string& message, const RosDefinitions& definitions);
 
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

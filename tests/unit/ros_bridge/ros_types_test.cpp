@@ -12,7 +12,7 @@
 #include "ros_bridge/ros_descriptors.hpp"
 #include "unit/ros_bridge/ros_definitions.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 std::string read(const std::filesystem::path& file) {
@@ -159,4 +159,4 @@ TEST(RosTypes, HumblesGraphMessagesDifferInTheLengthOfTheIdsOnly) {
 }
 
 }  // namespace
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

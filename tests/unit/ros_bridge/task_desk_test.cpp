@@ -7,7 +7,7 @@
 #include "constrictor/text.hpp"
 #include "ros_bridge/task_desk.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 using namespace std::chrono_literals;
@@ -180,4 +180,4 @@ TEST(RosTaskTexts, AreJsonWithNamesInsteadOfNumbers) {
 }
 
 }  // namespace
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -14,7 +14,7 @@
 #include "robot/kinematics.hpp"
 #include "ros_bridge/ros_translator.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 RobotModel mamba() { return load_robot(data_path("components/lib/robot/mamba.yaml")); }
@@ -210,4 +210,4 @@ TEST(RosVelocity, AHostileVelocityGivesABoundedMotion) {
 }
 
 }  // namespace
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

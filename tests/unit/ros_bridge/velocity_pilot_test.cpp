@@ -3,7 +3,7 @@
 
 #include "ros_bridge/velocity_pilot.hpp"
 
-namespace constrictor::ros {
+namespace constrictor::ros_bridge {
 namespace {
 
 constexpr Drive kAhead{0.5, 0.0};
@@ -104,4 +104,4 @@ TEST_F(VelocityPilotTest, ATaskIsNotEndedByTheVelocityBeforeItNorByZeros) {
 }
 
 }  // namespace
-}  // namespace constrictor::ros
+}  // namespace constrictor::ros_bridge

@@ -11,8 +11,10 @@
 #include "constrictor/sha256.hpp"
 #include "queue_world.hpp"
 
-namespace constrictor::toys {
+namespace constrictor {
 namespace {
+
+using namespace testing::toys;
 
 // Runs of two and three ticks with a crash take minutes: they have the label `long`. The quick tests run one tick.
 #ifdef CONSTRICTOR_EXPLORE_LONG
@@ -184,4 +186,4 @@ TEST(BarrierExploration, AResetWhileAMemberRestartsGivesTheResultOfANewRun) {
 }
 
 }  // namespace
-}  // namespace constrictor::toys
+}  // namespace constrictor

@@ -9,7 +9,7 @@
 #include "barrier/member.hpp"
 #include "barrier/topic_ops.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 
 inline constexpr EpochId kEpoch{7, 1};
 
@@ -59,4 +59,4 @@ struct ConductorRecord : ConductorSink {
   std::vector<std::pair<std::string, std::string>> refusals;
 };
 
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -35,7 +35,7 @@ class ClientLinkTest : public ::testing::Test {
       writer.write(request);
     }
     dds::Entity participant;
-    dds::RequestWriter writer;
+    RequestWriter writer;
     std::uint8_t kind = msg::kRequestTake;
   };
   [[nodiscard]] std::unique_ptr<Program> program(std::int64_t lease_ns = 0) const {
@@ -44,7 +44,7 @@ class ClientLinkTest : public ::testing::Test {
     return made;
   }
   /// Waits until the latch has returned at least `count` items, and returns them.
-  std::vector<ClientEvent> latched(const dds::ClientLink& link, std::size_t count,
+  std::vector<ClientEvent> latched(const ClientLink& link, std::size_t count,
                                    const std::vector<LivingSource>& living = {}) {
     std::vector<ClientEvent> items;
     EXPECT_TRUE(eventually([&] {
@@ -62,7 +62,7 @@ class ClientLinkTest : public ::testing::Test {
 };
 
 TEST_F(ClientLinkTest, ClientsWithTheSameNameAreDistinguishedByTheirWriters) {
-  const dds::ClientLink link(robot_.participant(), 1);
+  const ClientLink link(robot_.participant(), 1);
   const auto first = program();
   first->send("p", 57);
   const auto of_first = latched(link, 1);
@@ -77,7 +77,7 @@ TEST_F(ClientLinkTest, ClientsWithTheSameNameAreDistinguishedByTheirWriters) {
 }
 
 TEST_F(ClientLinkTest, AReaderThatHasReceivedNothingFromASourceDetectsItsDeath) {
-  auto before = std::make_unique<dds::ClientLink>(robot_.participant(), 1);
+  auto before = std::make_unique<ClientLink>(robot_.participant(), 1);
   auto operates = program();
   const auto hangs = program(500'000'000);
   operates->send("operates", 1);
@@ -86,7 +86,7 @@ TEST_F(ClientLinkTest, AReaderThatHasReceivedNothingFromASourceDetectsItsDeath) 
   for (const auto& item : latched(*before, 2)) living.push_back({item.source, item.writer});
   before.reset();
   ASSERT_EQ(living.size(), 2u);
-  const dds::ClientLink after(robot_.participant(), 1, {}, 60s);  // as in a restarted process of `input`
+  const ClientLink after(robot_.participant(), 1, {}, 60s);  // as in a restarted process of `input`
   after.track_writers_for(requests_);
   hangs->writer.assert_alive();
   const auto first_death = latched(after, 1, living);  // it no longer asserts that it is alive
@@ -103,7 +103,7 @@ TEST_F(ClientLinkTest, AReaderThatHasReceivedNothingFromASourceDetectsItsDeath) 
 }
 
 TEST_F(ClientLinkTest, ASourceThatIsNotFoundWithinTheGraceIsDead) {
-  const dds::ClientLink link(robot_.participant(), 1, {}, 300ms);
+  const ClientLink link(robot_.participant(), 1, {}, 300ms);
   link.track_writers_for(requests_);
   const auto alive = program();
   alive->send("alive", 1);
@@ -116,7 +116,7 @@ TEST_F(ClientLinkTest, ASourceThatIsNotFoundWithinTheGraceIsDead) {
 }
 
 TEST_F(ClientLinkTest, ARequestOutOfRangeIsRefusedWithItsFieldExceptAnEmergencyStop) {
-  const dds::ClientLink link(robot_.participant(), 1);
+  const ClientLink link(robot_.participant(), 1);
   const auto wild = program();
   wild->send("wild", 1, 77);
   const auto refused = latched(link, 1);

@@ -6,7 +6,7 @@
 #include "barrier/conductor.hpp"
 #include "barrier_fixture.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 
 inline constexpr std::uint8_t kEvents = topics::kTaskEvent.id;
 inline constexpr std::uint8_t kJoints = topics::kJointState.id;
@@ -79,4 +79,4 @@ class ConductorTest : public ::testing::Test {
   Conductor conductor_{options(), static_cast<ConductorSink&>(record_)};
 };
 
-}  // namespace constrictor::testing
+}  // namespace constrictor

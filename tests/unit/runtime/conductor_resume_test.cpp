@@ -1,7 +1,7 @@
 // What the conductor gives a restarted member.
 #include "conductor_fixture.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 TEST_F(ConductorTest, ARestartedMemberGetsItsLastStateAndAsManyOutputsAsTheTopicKeeps) {
@@ -57,4 +57,4 @@ TEST_F(ConductorTest, ARepeatedHelloIsAnsweredByTheSameResumeUntilTheMemberIsRea
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -4,7 +4,7 @@
 
 #include "conductor_fixture.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 TEST_F(ConductorTest, TheEpochBeginsWithTheLastHelloAndTicksWithTheLastReady) {
@@ -187,4 +187,4 @@ TEST_F(ConductorTest, AtRealTimePaceTicksWaitForThePlantAlone) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -9,7 +9,7 @@
 #include "barrier_fixture.hpp"
 #include "component/topic_set.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 constexpr auto& kTopic = topics::kTaskEvent;
@@ -132,4 +132,4 @@ TEST(TopicSet, HasWhatWasInsertedAndNoUnknownTopic) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -12,7 +12,7 @@
 #include "cyclone/type_tree.hpp"
 #include "support/eventually.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 TEST(KnownType, EveryTopicOfTheTableHasOneAndOthersHaveNone) {
@@ -34,7 +34,7 @@ TEST(KnownType, DecodesASampleByNameAlone) {
   const dds::Writer<msg::JointState> writer(talker.get(), "joint_state", 8);
   const dds::Discovery discovery(domain.participant());
   std::optional<dds::Endpoint> found;
-  ASSERT_TRUE(eventually([&] {
+  ASSERT_TRUE(testing::eventually([&] {
     for (auto& endpoint : discovery.endpoints()) {
       if (endpoint.writer && endpoint.topic == "joint_state") found = endpoint;
     }
@@ -49,7 +49,7 @@ TEST(KnownType, DecodesASampleByNameAlone) {
   const auto tree = dds::TypeTree::known(domain.participant(), found->type);
   ASSERT_TRUE(tree);
   nlohmann::ordered_json sample;
-  ASSERT_TRUE(eventually([&] {
+  ASSERT_TRUE(testing::eventually([&] {
     reader.take([&](const dds::RawSample& raw) { sample = tree->decode(raw.bytes); });
     return !sample.is_null();
   }));
@@ -58,4 +58,4 @@ TEST(KnownType, DecodesASampleByNameAlone) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

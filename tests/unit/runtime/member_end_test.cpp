@@ -6,7 +6,7 @@
 #include "component/concluding.hpp"
 #include "member_fixture.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 /// What the component saw when it concluded.
@@ -18,7 +18,7 @@ struct Seen {
   bool operator==(const Seen&) const = default;
 };
 
-class Ending : public Stateful<Component, toys::Mixer>, public Concluding {
+class Ending : public Stateful<Component, testing::toys::Mixer>, public Concluding {
  public:
   Ending(Wiring& wiring, Seen& seen)
       : seen_(seen), joints_(wiring.latest(topics::kJointState)), events_(wiring.events(topics::kTaskEvent)) {}
@@ -183,4 +183,4 @@ TEST_F(MemberEnd, AResetEndsTheWaitForInputs) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

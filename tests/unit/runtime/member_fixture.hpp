@@ -9,13 +9,13 @@
 #include "barrier_fixture.hpp"
 #include "toy_components.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 
 /// The toy `control`: reads the latest joint state and every task event, writes a joint command in each step.
 class MemberTest : public ::testing::Test {
  protected:
   std::unique_ptr<Member> make(std::uint32_t incarnation = 1, MemberRecord* record = nullptr) {
-    return std::make_unique<Member>(toys::control(), constrictor::Setup{}, incarnation, /*checkpoints=*/true,
+    return std::make_unique<Member>(testing::toys::control(), constrictor::Setup{}, incarnation, /*checkpoints=*/true,
                                     static_cast<MemberSink&>(record ? *record : record_));
   }
   static std::vector<TickDone::Count> visible(std::uint64_t joints, std::uint64_t events) {
@@ -43,7 +43,7 @@ class MemberTest : public ::testing::Test {
   /// Output hash after `ticks` steps of a member that nothing happened to.
   static std::array<std::uint8_t, 32> undisturbed_hash(std::int64_t ticks) {
     MemberRecord record;
-    Member member(toys::control(), constrictor::Setup{}, 1, true, static_cast<MemberSink&>(record));
+    Member member(testing::toys::control(), constrictor::Setup{}, 1, true, static_cast<MemberSink&>(record));
     member.on_epoch(kEpoch, 1);
     for (std::int64_t k = 0; k < ticks; ++k) {
       const auto count = static_cast<std::uint64_t>(k + 1);
@@ -57,4 +57,4 @@ class MemberTest : public ::testing::Test {
   MemberRecord record_;
 };
 
-}  // namespace constrictor::testing
+}  // namespace constrictor

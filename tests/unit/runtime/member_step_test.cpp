@@ -5,7 +5,7 @@
 
 #include "member_fixture.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 using MemberStepTest = MemberTest;
@@ -72,4 +72,4 @@ TEST_F(MemberStepTest, AResetDropsTheOutputsOfAStepInProgress) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -8,7 +8,7 @@
 
 #include "member_fixture.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 TEST_F(MemberTest, StepsOnceItsTickAndAllOfItsInputsAreThere) {
@@ -235,4 +235,4 @@ TEST_F(MemberTest, InvalidOutputsAndTooManyOutputsDoNotLeaveTheMember) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

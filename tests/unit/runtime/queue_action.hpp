@@ -4,7 +4,7 @@
 #include <string>
 #include <tuple>
 
-namespace constrictor::toys {
+namespace constrictor::testing::toys {
 
 struct QueueAction {
   enum Kind { kDeliver, kStep, kTick, kCrash, kReset } kind;
@@ -15,4 +15,4 @@ struct QueueAction {
   }
 };
 
-}  // namespace constrictor::toys
+}  // namespace constrictor::testing::toys

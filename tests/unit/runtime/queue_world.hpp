@@ -23,7 +23,7 @@
 #include "queue_action.hpp"
 #include "toy_components.hpp"
 
-namespace constrictor::toys {
+namespace constrictor::testing::toys {
 
 class QueueWorld : private ConductorSink {
  public:
@@ -291,6 +291,6 @@ class QueueWorld : private ConductorSink {
   std::vector<msg::Tick> ticks_;
 };
 
-}  // namespace constrictor::toys
+}  // namespace constrictor::testing::toys
 
 #include "queue_world_parts.hpp"

@@ -4,7 +4,7 @@
 
 #include "queue_world.hpp"
 
-namespace constrictor::toys {
+namespace constrictor::testing::toys {
 
 inline void QueueWorld::crash(const std::string& name, int lost) {
   Node& dead = find(name);
@@ -85,4 +85,4 @@ inline std::string QueueWorld::fingerprint() const {
   return text;
 }
 
-}  // namespace constrictor::toys
+}  // namespace constrictor::testing::toys

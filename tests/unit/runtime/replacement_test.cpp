@@ -5,7 +5,7 @@
 #include "barrier/protocol.hpp"
 #include "member_fixture.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 class Replacement : public MemberTest {
@@ -109,4 +109,4 @@ TEST(ReplacingHash, FitsIntoTheMessageAndKeepsTheScenario) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

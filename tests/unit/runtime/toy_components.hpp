@@ -9,7 +9,7 @@
 
 #include "component/component.hpp"
 
-namespace constrictor::toys {
+namespace constrictor::testing::toys {
 
 /// A hash of all values that were mixed into it; unit() returns it as a number in [0, 1).
 struct Mixer {
@@ -144,4 +144,4 @@ inline ComponentFactory planner() {
           [](Wiring& w, const Setup& s) -> std::unique_ptr<Component> { return std::make_unique<ToyPlanner>(w, s); }};
 }
 
-}  // namespace constrictor::toys
+}  // namespace constrictor::testing::toys

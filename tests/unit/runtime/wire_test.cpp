@@ -7,7 +7,7 @@
 
 #include "runtime/config_hash.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 TickDone a_step() {
@@ -36,7 +36,7 @@ void expect_equal(const std::vector<TickDone::Written>& a, const std::vector<Tic
 TEST(Wire, ATickDoneArrivesAsItWasSent) {
   const TickDone sent = a_step();
   std::string block;
-  const auto received = dds::from_wire(dds::to_wire(sent, block));
+  const auto received = from_wire(to_wire(sent, block));
   ASSERT_TRUE(received);
   EXPECT_EQ(received->component, sent.component);
   EXPECT_EQ(received->epoch, sent.epoch);
@@ -68,7 +68,7 @@ TEST(Wire, AHelloAndAResumeArriveAsTheyWereSent) {
   hello.timing = {5, 2};
   hello.reads = TopicSet::of(topics::kJointState);
   hello.writes = TopicSet::from_bits(~std::uint64_t{0});
-  const Hello received = dds::from_wire(dds::to_wire(hello));
+  const Hello received = from_wire(to_wire(hello));
   EXPECT_FALSE(difference(received, hello));
   EXPECT_EQ(received.component, "control");
   EXPECT_EQ(received.run_id, 9u);
@@ -84,7 +84,7 @@ TEST(Wire, AHelloAndAResumeArriveAsTheyWereSent) {
 
   const Resume resume{"control", {7, 3}, 4, 12, 99, "state", a_step().written};
   std::string block;
-  const auto back = dds::from_wire(dds::to_wire(resume, block));
+  const auto back = from_wire(to_wire(resume, block));
   ASSERT_TRUE(back);
   EXPECT_EQ(back->component, "control");
   EXPECT_EQ(back->epoch, resume.epoch);
@@ -99,13 +99,13 @@ TEST(Wire, MoreTopicsThanTheMessageHasRoomForAreABug) {
   TickDone done = a_step();
   done.published.assign(1000, {3, 1});
   std::string block;
-  EXPECT_THROW((void)dds::to_wire(done, block), std::logic_error);
+  EXPECT_THROW((void)to_wire(done, block), std::logic_error);
 }
 
 TEST(Wire, CountsBeyondTheArraysAreCutOff) {
   msg::TickDone message{};
   message.published_count = message.consumed_count = 255;
-  const auto received = dds::from_wire(message);
+  const auto received = from_wire(message);
   ASSERT_TRUE(received);
   EXPECT_EQ(received->published.size(), std::size(message.published));
   EXPECT_EQ(received->consumed.size(), std::size(message.consumed));
@@ -154,4 +154,4 @@ TEST(ConfigHash, DependsOnRosterAndPlant) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -1,7 +1,7 @@
 // The driver on a bad day: cables, servos, power, noise, watchdog, and a successor after a crash.
 #include "driven_robot.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 /// Swings the yaw joints.
@@ -245,4 +245,4 @@ TEST_F(BusFault, WithoutContactSensorsTheRobotSaysSo) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -3,7 +3,7 @@
 
 #include "driven_robot.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 class Master : public DrivenRobot {
@@ -82,4 +82,4 @@ TEST_F(Master, ALateAnswerIsNotTakenForThatOfTheNextQuestion) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

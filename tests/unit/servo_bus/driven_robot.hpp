@@ -21,7 +21,7 @@
 #include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 
 inline const std::filesystem::path kProject = testing::source_path();
 
@@ -45,7 +45,7 @@ class DrivenRobot : public ::testing::Test {
       patience_s_.push_back(patience_s);
       return std::make_unique<EmulatedPort>(bench_, port.device == "bus0" ? 0 : 1, port.baud);
     };
-    const ComponentFactory control = commander(
+    const ComponentFactory control = testing::commander(
         [this](std::int64_t tick, msg::JointCommand& command) { return command_ && command_(tick, command); });
     const auto file = config.empty() ? std::filesystem::path{} : config_.path() / "servo_bus.yaml";
     std::map<std::string, std::filesystem::path> files;
@@ -92,7 +92,7 @@ class DrivenRobot : public ::testing::Test {
   void order_stop() { run_->member("servo_bus").stop_orders()->add("somebody"); }
   [[nodiscard]] std::string last_refusal() { return run_->member("servo_bus").counters().last_refusal; }
   /// Bends the yaw joints to a zigzag, in which the body does not touch itself.
-  static CommandAt bend(double angle_rad) {
+  static testing::CommandAt bend(double angle_rad) {
     return [angle_rad](std::int64_t, msg::JointCommand& command) {
       for (int i = 0; i < 23; i += 2) command.position_rad[i] = i % 4 == 0 ? angle_rad : -angle_rad;
       return true;
@@ -106,15 +106,15 @@ class DrivenRobot : public ::testing::Test {
     }));
   }
 
-  const TemporaryFolder config_;
+  const testing::TemporaryFolder config_;
   const Log log_{"servo_bus", config_.path() / "servo_bus.log"};
   std::vector<LogRecord> logged_;
   dynamixel::BusPlan plan_;
   Bench bench_;
-  CommandAt command_;
+  testing::CommandAt command_;
   std::vector<double> patience_s_;  ///< of each attempt to open a port
   std::unique_ptr<LocalRun> run_;
   std::int64_t next_tick_ns_ = 20'000'000;
 };
 
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -8,7 +8,7 @@
 #include "serial/port.hpp"
 #include "sim/servo_emulator/emulated_robot.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 
 /// The robot and its time.
 struct Bench {
@@ -61,4 +61,4 @@ class EmulatedPort final : public serial::Port {
   std::uint32_t baud_;
 };
 
-}  // namespace constrictor::testing
+}  // namespace constrictor

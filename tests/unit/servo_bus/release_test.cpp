@@ -1,7 +1,7 @@
 // How the driver leaves the servos when it ends, and how the next run finds them.
 #include "driven_robot.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 TEST_F(DrivenRobot, TheTorqueIsOffWhenTheProcessEndsInOrder) {
@@ -62,4 +62,4 @@ TEST_F(DrivenRobot, ASilentServoDoesNotKeepTheOthersFromBeingReleased) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -3,7 +3,7 @@
 
 #include "configuration/configuration.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 TEST_F(DrivenRobot, TheStartMovesNothing) {
@@ -245,4 +245,4 @@ TEST_F(DrivenRobot, RefusesToRunFasterThanTheClock) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

@@ -1,14 +1,14 @@
 // Torque mode on emulated servos: what the registers say, what the joints do, and how it ends.
 #include "driven_robot.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 constexpr double kNmPerUnit = 0.00269 * 7.3 / 4.4;  // of the servo's current, by its data sheet
 constexpr double kLimit_rad = 1.5;                  // of the robot's joints
 
 /// Pushes one joint; the others exert no torque.
-CommandAt push(std::size_t joint, double torque_nm) {
+testing::CommandAt push(std::size_t joint, double torque_nm) {
   return [=](std::int64_t, msg::JointCommand& command) {
     command.mode = msg::kServoTorque;
     command.torque_nm[joint] = torque_nm;
@@ -142,4 +142,4 @@ TEST_F(DrivenRobot, RelaxedJointsMayBePushedAndRelaxedAgain) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

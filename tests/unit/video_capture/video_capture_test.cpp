@@ -17,7 +17,7 @@
 #include "support/scripted_members.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace constrictor::testing {
+namespace constrictor {
 namespace {
 
 struct Image {
@@ -110,7 +110,7 @@ class VideoCaptureTest : public ::testing::Test {
       run_->advance(1);
       return images_.size() >= count;
     };
-    return eventually(enough, bound);
+    return testing::eventually(enough, bound);
   }
   /// The lines of the log.
   [[nodiscard]] std::string log() const {
@@ -118,14 +118,14 @@ class VideoCaptureTest : public ::testing::Test {
     return {std::istreambuf_iterator<char>(file), {}};
   }
   bool logged(const std::string& text) {
-    return eventually([&] {
+    return testing::eventually([&] {
       run_->advance(1);
       return log().find(text) != std::string::npos;
     });
   }
   [[nodiscard]] std::string refusals() { return run_->member("camera").counters().last_refusal; }
 
-  const TemporaryFolder folder_;
+  const testing::TemporaryFolder folder_;
   std::string robot_ = "mamba.yaml";
   std::shared_ptr<HandFed> camera_ = std::make_shared<HandFed>();
   std::unique_ptr<LocalRun> run_;
@@ -212,7 +212,7 @@ TEST_F(VideoCaptureTest, PublishesTheNewestLiveFrameOnceWithTheTickOfItsExposure
 TEST_F(VideoCaptureTest, RefusesLateFramesAndFramesOfAnotherCamera) {
   start("stream: {late_after_s: 0.3}", true);
   const auto refused = [&](const std::string& text) {
-    return eventually([&] {
+    return testing::eventually([&] {
       run_->advance(1);
       return refusals().find(text) != std::string::npos;
     });
@@ -244,7 +244,7 @@ TEST_F(VideoCaptureTest, BoundsTheLinesOfTheLog) {
     if (i % 2 == 0) {
       ASSERT_TRUE(images(i / 2)) << log();
     } else {
-      ASSERT_TRUE(eventually([&] {
+      ASSERT_TRUE(testing::eventually([&] {
         run_->advance(1);
         return run_->member("camera").counters().refused == (i + 1) / 2;
       })) << i;
@@ -289,4 +289,4 @@ TEST_F(VideoCaptureTest, RefusesAConfigurationThatCannotWork) {
 }
 
 }  // namespace
-}  // namespace constrictor::testing
+}  // namespace constrictor

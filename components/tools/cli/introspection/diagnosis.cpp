@@ -14,7 +14,7 @@
 namespace constrictor::cli {
 namespace {
 
-namespace wire = dds::barrier_topics;
+namespace wire = barrier_topics;
 
 /// Smallest sufficient receive buffer: room for an uncompressed image of 640 x 480 pixels and the messages that arrive
 /// at the same time.

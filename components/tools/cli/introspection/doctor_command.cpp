@@ -82,7 +82,7 @@ void look(const DomainView& view, Facts& facts) {
   view.settle(2500ms);
   facts.participants = view.discovery().participants();
   facts.endpoints = view.discovery().endpoints();
-  const auto hellos = dds::Reader<msg::Hello>::member(view.participant(), dds::barrier_topics::kHello);
+  const auto hellos = dds::Reader<msg::Hello>::member(view.participant(), barrier_topics::kHello);
   for (int i = 0; i < 20; ++i) {
     hellos.take([&](const msg::Hello& hello) { facts.hellos.push_back(hello); });
     if (!facts.hellos.empty() && i > 10) break;
