@@ -104,11 +104,25 @@ TEST_F(Determinism, AProcessOfSeveralMembersKilledTenTimesDoesNotChangeTheHash) 
   const std::string expected = run("reference");
   const std::string victim = "navigation,control,input,planner";
   Process process = start("killed", {"--pace", "1x", "--group", victim, "--group", "camera,perception,report"});
+  RunTicks ticks(process);
+  const auto hellos = dds::Reader<msg::Hello>::member(ticks.participant(), barrier_topics::kHello);
+  std::uint32_t announced = 0;
   int kills = 0;
   for (pid_t dead = -1; kills < 10; ++kills) {
     const pid_t pid = running(victim, dead);
     ASSERT_GT(pid, 0) << process.output();
-    std::this_thread::sleep_for(std::chrono::milliseconds(150 + 70 * kills));  // before, while and after it joins
+    const auto joins = [&] {
+      hellos.take([&](const msg::Hello& hello) {
+        if (hello.component == std::string_view("control")) announced = std::max(announced, hello.incarnation);
+      });
+      return announced > static_cast<std::uint32_t>(kills);
+    };
+    // Before, while and after it joins.
+    if (kills >= 3 && kills < 6) {
+      ASSERT_TRUE(eventually(joins)) << "incarnation " << announced << ": " << process.output();
+    } else if (kills >= 6) {
+      ASSERT_TRUE(ticks.pass(10 * (kills - 5))) << process.output();
+    }
     if (!process.running()) break;
     ::kill(dead = pid, SIGKILL);
   }
