@@ -18,12 +18,17 @@ static_assert(std::endian::native == std::endian::little, "checkpoints have the 
 /// An output archive of cereal that appends to a string.
 class BytesWriter : public cereal::OutputArchive<BytesWriter, cereal::AllowEmptyClassElision> {
  public:
-  BytesWriter() : OutputArchive(this) {}
+  /// Uses the memory of this string; its content is lost.
+  explicit BytesWriter(std::string memory = {}) : OutputArchive(this), bytes_(std::move(memory)) {
+    bytes_.clear();
+    bytes_.reserve(kRoom);
+  }
   void write(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
   /// What was written; afterwards the archive is empty.
   [[nodiscard]] std::string take() { return std::exchange(bytes_, {}); }
 
  private:
+  static constexpr std::size_t kRoom = 16384;  // [byte] so that the memory of most states is allocated once
   std::string bytes_;
 };
 

@@ -178,7 +178,7 @@ bool Conductor::on_done(const TickDone& done) {
     member.state_index = done.index;
   }
   for (const auto& [topic, count] : done.published) member.published[topic] = count;
-  member.pending.push_back({done.index, done.incarnation, done.published, done.output_hash});
+  member.pending.push_back({done.index, done.incarnation, member.published, done.output_hash});
   for (const auto& written : done.written) keep(member, written);
   if (done.end_of_run) {
     const std::int64_t at = done.index + member.hello.timing.latency;
@@ -222,15 +222,16 @@ std::vector<Conductor::Owed> Conductor::owed() const {
 
 void Conductor::tick(const std::vector<TickDone::Count>& plant, PlantCheckpoint checkpoint) {
   for (auto& [name, member] : members_) {
-    for (; !member.pending.empty(); member.pending.pop_front()) {
-      const Pending& step = member.pending.front();
-      if (step.index + member.hello.timing.latency > next_index_) break;
-      for (const auto& [topic, count] : step.published) {
-        if (count > visible_[topic]) incarnations_[topic] = step.incarnation;
-        visible_[topic] = count;
+    auto step = member.pending.begin();
+    for (; step != member.pending.end() && step->index + member.hello.timing.latency <= next_index_; ++step) {
+      for (std::size_t topic = 0; topic < topics::kCount; ++topic) {
+        if (step->published[topic] <= visible_[topic]) continue;
+        incarnations_[topic] = step->incarnation;
+        visible_[topic] = step->published[topic];
       }
-      member.output_hash = step.output_hash;
+      member.output_hash = step->output_hash;
     }
+    member.pending.erase(member.pending.begin(), step);
   }
   MemberState& owner = members_.at(options_.plant);
   for (const auto& [topic, count] : plant) {
@@ -257,7 +258,7 @@ void Conductor::tick(const std::vector<TickDone::Count>& plant, PlantCheckpoint 
   std::size_t most_late = 1;
   for (const auto& [name, member] : members_) most_late = std::max<std::size_t>(most_late, member.hello.timing.latency);
   ticks_.push_back(tick);
-  while (ticks_.size() > most_late + 1) ticks_.pop_front();
+  if (ticks_.size() > most_late + 1) ticks_.erase(ticks_.begin());
   sink_.tick(tick);
 }
 

@@ -55,8 +55,9 @@ class Conductor {
 
   /// Everything that a successor needs. A conductor that is to be continued is saved before each call of the sink is
   /// carried out, so that no process has ever received something from it that the checkpoint does not contain. What
-  /// the conductor received since then, the successor receives again from the histories of the writers.
-  [[nodiscard]] Checkpoint save() const;
+  /// the conductor received since then, the successor receives again from the histories of the writers. The result uses
+  /// the memory of `memory`, whose content is lost.
+  [[nodiscard]] Checkpoint save(Checkpoint memory = {}) const;
 
   /// A member announces itself: it joins, it comes back with a newer incarnation, or it is refused with a reason.
   void on_hello(const Hello& hello);
@@ -116,17 +117,17 @@ class Conductor {
  private:
   /// A finished step whose outputs are not visible yet.
   struct Pending {
-    std::int64_t index;
-    std::uint32_t incarnation;
-    std::vector<TickDone::Count> published;
-    std::array<std::uint8_t, 32> output_hash;
+    std::int64_t index = 0;
+    std::uint32_t incarnation = 0;
+    std::array<std::uint64_t, msg::kMaxTopics> published{};  ///< counts by topic after the step
+    std::array<std::uint8_t, 32> output_hash{};
   };
   struct MemberState {
     Hello hello;
     bool hello_received = false;
     bool ready = false;
     std::int64_t last_done = -1;
-    std::deque<Pending> pending;
+    std::vector<Pending> pending;
     std::array<std::uint64_t, msg::kMaxTopics> published{};  ///< counts by topic after last_done
     std::array<std::uint8_t, 32> output_hash{};              ///< of what is visible
     Blob state;                                              ///< checkpoint; null: none
@@ -150,9 +151,9 @@ class Conductor {
   std::uint64_t seed_;
   std::int64_t next_index_ = 0;
   bool ended_ = false;
-  bool successor_ = false;       ///< it continues from a checkpoint
-  bool awaits_plant_ = false;    ///< likewise, and the plant has not sent its Hello
-  std::deque<msg::Tick> ticks_;  ///< the newest ones: those that a member may not have stepped at
+  bool successor_ = false;        ///< it continues from a checkpoint
+  bool awaits_plant_ = false;     ///< likewise, and the plant has not sent its Hello
+  std::vector<msg::Tick> ticks_;  ///< the newest ones: those that a member may not have stepped at
   std::optional<std::int64_t> end_requested_at_;
   std::array<std::uint64_t, msg::kMaxTopics> visible_{};
   std::array<std::uint32_t, msg::kMaxTopics> incarnations_{};

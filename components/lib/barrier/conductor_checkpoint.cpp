@@ -18,6 +18,9 @@ namespace {
 
 /// Writes blobs into a list, and their places in it between the numbers and texts.
 struct Writer {
+  explicit Writer(Checkpoint memory) : archive(std::move(memory.head)), blobs(std::move(memory.blobs)) {
+    blobs.clear();
+  }
   BytesWriter archive;
   std::vector<Blob> blobs;
 
@@ -82,11 +85,7 @@ struct Conductor::Archived {
     archive.values(m.hello_received, m.ready, m.last_done, m.published, m.output_hash, m.state_index);
     archive.blob(m.state);
     size_of(archive, m.pending);
-    for (Pending& step : m.pending) {
-      archive.values(step.index, step.incarnation, step.output_hash);
-      size_of(archive, step.published);
-      for (auto& [topic, count] : step.published) archive.values(topic, count);
-    }
+    for (Pending& step : m.pending) archive.values(step.index, step.incarnation, step.published, step.output_hash);
     for (std::size_t topic = 0; topic < topics::kCount; ++topic) {
       if (!m.hello.writes.contains(topic)) continue;
       auto& samples = m.history[static_cast<std::uint8_t>(topic)];
@@ -111,9 +110,9 @@ struct Conductor::Archived {
   }
 };
 
-Checkpoint Conductor::save() const {
+Checkpoint Conductor::save(Checkpoint memory) const {
   static_assert(std::is_trivially_copyable_v<msg::Tick>);
-  Writer writer;
+  Writer writer(std::move(memory));
   writer.values(options_.release, options_.run_id, options_.roster, options_.plant, options_.idl_hash,
                 options_.config_hash, options_.numeric_profile, options_.period_ns, options_.realtime);
   Archived::rest(writer, const_cast<Conductor&>(*this));  // writing changes nothing

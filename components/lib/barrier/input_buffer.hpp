@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
+#include <vector>
 
 #include "component/ports.hpp"
 
@@ -53,7 +53,7 @@ class InputBuffer {
   /// Newest sequence number that a step has seen; 0 before the first.
   [[nodiscard]] std::uint64_t consumed() const { return consumed_; }
   /// Newest sequence number that has arrived; 0 before the first.
-  [[nodiscard]] std::uint64_t newest() const { return samples_.empty() ? consumed_ : samples_.rbegin()->first; }
+  [[nodiscard]] std::uint64_t newest() const { return samples_.empty() ? consumed_ : samples_.back().sequence(); }
 
   /// The part of a checkpoint; the samples themselves come from the writers' histories.
   template <class Archive>
@@ -65,12 +65,19 @@ class InputBuffer {
   struct Entry {
     Sample sample;
     bool valid = true;
+    [[nodiscard]] std::uint64_t sequence() const { return sample.header->sequence_number; }
   };
+  using Entries = std::vector<Entry>;
+  /// The first sample from this sequence number on, or after it; end() if there is none.
+  [[nodiscard]] Entries::const_iterator from(std::uint64_t sequence) const;
+  [[nodiscard]] Entries::const_iterator after(std::uint64_t sequence) const;
+  /// The sample with this sequence number; end() if it has not arrived.
+  [[nodiscard]] Entries::const_iterator find(std::uint64_t sequence) const;
   /// Newest valid sequence number up to `target`; 0 if there is none.
   [[nodiscard]] std::uint64_t newest_valid(std::uint64_t target) const;
 
   InputSlot slot_;
-  std::map<std::uint64_t, Entry> samples_;  ///< by sequence number
+  Entries samples_;  ///< in the order of their sequence numbers; a vector, which keeps its memory from step to step
   std::uint64_t consumed_ = 0;
   std::uint64_t announced_ = 0;
   std::uint64_t last_valid_ = 0;  ///< newest valid sequence number up to consumed_

@@ -150,7 +150,10 @@ void Member::on_tick(const msg::Tick& tick) {
   if (tick.final_tick && !ended_) conclude(tick);
   newest_tick_ = std::max(newest_tick_, tick.index);
   for (auto& input : inputs_) input->announce(tick.visible[input->topic().id]);
-  if (tick.index % timing_.period == 0 && !tick.final_tick) ticks_.emplace(tick.index, tick);
+  if (tick.index % timing_.period != 0 || tick.final_tick) return;
+  const auto at = std::lower_bound(ticks_.begin(), ticks_.end(), tick.index,
+                                   [](const msg::Tick& one, std::int64_t index) { return one.index < index; });
+  if (at == ticks_.end() || at->index != tick.index) ticks_.insert(at, tick);
 }
 
 void Member::on_sample(std::size_t topic_id, const Sample& sample) {
@@ -179,12 +182,10 @@ void Member::on_sample(std::size_t topic_id, const Sample& sample) {
   if (concludes_at_) conclude(*concludes_at_);
 }
 
-const msg::Tick* Member::due() const {
-  return epoch_ && !ticks_.empty() && !ended_ ? &ticks_.begin()->second : nullptr;
-}
+const msg::Tick* Member::due() const { return epoch_ && !ticks_.empty() && !ended_ ? &ticks_.front() : nullptr; }
 
 void Member::skip_to_newest() {
-  while (ticks_.size() > 1 && std::next(ticks_.begin())->second.realtime) {
+  while (ticks_.size() > 1 && ticks_[1].realtime) {
     ticks_.erase(ticks_.begin());
     ++counters_.skipped;
   }
@@ -210,7 +211,8 @@ bool Member::begin_step() {
   for (auto& port : outputs_) port->in_this_step = 0;
   const std::int64_t elapsed = last_done_ < 0 ? timing_.period : tick->index - last_done_;
   fresh_component_ = resumed_ = false;
-  step_ = Step{Tick{tick->index, tick->time_ns, tick->period_ns, elapsed, tick->run_id, tick->epoch}};
+  step_ = Step{Tick{tick->index, tick->time_ns, tick->period_ns, elapsed, tick->run_id, tick->epoch},
+               std::move(outputs_memory_)};
   return true;
 }
 
@@ -219,10 +221,10 @@ void Member::run_step() {
   component_->step(step_->tick);
 }
 
-std::vector<TickDone::Count> Member::published() const {
-  std::vector<TickDone::Count> counts;
-  for (const auto& port : outputs_) counts.push_back({port->slot.topic->id, port->count});
-  return counts;
+const std::vector<TickDone::Count>& Member::published() {
+  done_.published.clear();
+  for (const auto& port : outputs_) done_.published.push_back({port->slot.topic->id, port->count});
+  return done_.published;
 }
 
 void Member::write(OutputPort& port, const void* message) {
@@ -240,10 +242,9 @@ void Member::write(OutputPort& port, const void* message) {
   if (step_) step_->outputs.emplace_back(&topic, sample);
   else if (measuring_) sample_.emplace_back(&topic, sample);
   else sink_.publish(topic, sample);
-  std::string bytes;
-  bytes.reserve(ops.max_size);
-  ops.append_bytes(sample.message.get(), bytes);
-  const auto all = std::as_bytes(std::span(bytes));
+  message_bytes_.clear();
+  ops.append_bytes(sample.message.get(), message_bytes_);
+  const auto all = std::as_bytes(std::span(message_bytes_));
   const std::size_t header_at = ops.header_at(all).value();
   // The output hash must not depend on the random run id, nor on how often the member was restarted.
   hash_.update(std::as_bytes(std::span(output_hash_)));
@@ -251,29 +252,34 @@ void Member::write(OutputPort& port, const void* message) {
   hash_.update(header_bytes(neutral_header(header)));
   hash_.update(all.subspan(header_at + kHeaderSize));
   output_hash_ = hash_.finish();
-  if (checkpoints_) written_.push_back({topic.id, std::move(bytes)});
+  if (checkpoints_) written_.push_back({topic.id, message_bytes_});
 }
 
 void Member::finish_step() {
   if (!step_) bug(name(), "finished a step that had not begun");
-  const Step step = *std::exchange(step_, std::nullopt);
+  Step step = *std::exchange(step_, std::nullopt);
   for (const auto& [topic, sample] : step.outputs) sink_.publish(*topic, sample);
   for (const auto& reason : step.refusals) refuse(reason);
+  step.outputs.clear();
+  outputs_memory_ = std::move(step.outputs);
   last_done_ = step.tick.index;
-  TickDone done;
-  done.component = name();
-  done.epoch = *epoch_;
-  done.incarnation = incarnation_;
-  done.index = step.tick.index;
-  done.published = published();
-  for (const auto& input : inputs_) done.consumed.push_back({input->topic().id, input->consumed()});
-  done.output_hash = output_hash_;
-  done.end_of_run = end_requested_;
+  done_.component = name();
+  done_.epoch = *epoch_;
+  done_.incarnation = incarnation_;
+  done_.index = step.tick.index;
+  static_cast<void>(published());
+  done_.consumed.clear();
+  for (const auto& input : inputs_) done_.consumed.push_back({input->topic().id, input->consumed()});
+  done_.output_hash = output_hash_;
+  done_.end_of_run = end_requested_;
   // The plant's checkpoint is made by measure(), just before the next tick.
-  if (checkpoints_ && !is_plant_) done.state = state_bytes();
-  if (!is_plant_) done.written = std::exchange(written_, {});
-  ticks_.erase(step.tick.index);
-  sink_.done(done);
+  if (checkpoints_ && !is_plant_) done_.state = state_bytes(std::move(done_.state));
+  if (!is_plant_) {
+    std::swap(done_.written, written_);
+    written_.clear();
+  }
+  std::erase_if(ticks_, [&](const msg::Tick& tick) { return tick.index == step.tick.index; });
+  sink_.done(done_);
   if (concludes_at_) conclude(*concludes_at_);
 }
 

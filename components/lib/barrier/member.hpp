@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,8 +79,8 @@ class Member {
   void publish_sample();
   /// Plant only: measure() and publish_sample().
   void sample_plant(std::int64_t index, std::int64_t time_ns, std::int64_t period_ns);
-  /// Samples of each topic that it writes, since the epoch began.
-  [[nodiscard]] std::vector<TickDone::Count> published() const;
+  /// Samples of each topic that it writes, since the epoch began. Valid until the next call or step.
+  [[nodiscard]] const std::vector<TickDone::Count>& published();
 
   /// Does one step if a tick is due and all of its inputs have arrived. Returns whether it did.
   bool try_step();
@@ -89,7 +88,7 @@ class Member {
   /// none is in progress, a tick is due and all of its inputs have arrived; returns whether it did.
   bool begin_step();
   /// Calls the component once after begin_step(). Any thread may call it. Meanwhile messages may be delivered (on_tick,
-  /// on_sample) and const functions may be called, published() excepted.
+  /// on_sample) and const functions may be called.
   void run_step();
   /// Publishes the outputs and reports the step, after run_step() has returned.
   void finish_step();
@@ -149,7 +148,8 @@ class Member {
   [[nodiscard]] const msg::Tick* due() const;
   void skip_to_newest();
   void write(OutputPort& port, const void* message);
-  [[nodiscard]] std::string state_bytes() const;
+  /// Uses the memory of `memory`, whose content is lost.
+  [[nodiscard]] std::string state_bytes(std::string memory) const;
   void restore(const std::string& state);
   void count_on(const std::vector<std::pair<const TopicInfo*, Sample>>& outputs);
 
@@ -173,13 +173,16 @@ class Member {
       epoch_after_resume_;                             ///< with its seed: it was announced before the Resume came
   std::vector<std::pair<std::size_t, Sample>> early_;  ///< arrived before the epoch was known
   std::vector<msg::Tick> early_ticks_;                 ///< likewise
-  std::map<std::int64_t, msg::Tick> ticks_;            ///< due ticks whose step is not finished
+  std::vector<msg::Tick> ticks_;                       ///< due ticks whose step is not finished, in their order
   std::int64_t last_done_ = -1;
   std::int64_t newest_tick_ = -1;
   bool ended_ = false;
   std::optional<msg::Tick> concludes_at_{};  ///< the final tick, while concluding()
   bool end_requested_ = false;
   std::optional<Step> step_;
+  std::vector<std::pair<const TopicInfo*, Sample>> outputs_memory_;  ///< for the outputs of the next step
+  std::string message_bytes_;                                        ///< of one message
+  TickDone done_;                                                    ///< the last one
   bool measuring_ = false;
   std::vector<std::pair<const TopicInfo*, Sample>> sample_;  ///< measured by the plant, and not published
   msg::Header stamp_{};                                      ///< header of the step in progress, sequence aside

@@ -46,8 +46,8 @@ void Member::count_on(const std::vector<std::pair<const TopicInfo*, Sample>>& ou
   }
 }
 
-std::string Member::state_bytes() const {
-  BytesWriter archive;
+std::string Member::state_bytes(std::string memory) const {
+  BytesWriter archive(std::move(memory));
   for (const auto& input : inputs_) archive(*input);
   for (const auto& port : outputs_) archive(port->count);
   archive(output_hash_, end_requested_, component_->save());

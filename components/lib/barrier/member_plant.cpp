@@ -19,11 +19,15 @@ PlantCheckpoint Member::measure(std::int64_t index, std::int64_t time_ns, std::i
   static_cast<Plant&>(*component_).sample(Tick{index, time_ns, period_ns, 1, epoch_->run_id, epoch_->epoch});
   measuring_ = false;
   if (!checkpoints_) return {};
-  return {state_bytes(), std::exchange(written_, {})};
+  PlantCheckpoint checkpoint{state_bytes({}), std::move(written_)};
+  written_.clear();
+  written_.reserve(outputs_.size());
+  return checkpoint;
 }
 
 void Member::publish_sample() {
-  for (const auto& [topic, sample] : std::exchange(sample_, {})) sink_.publish(*topic, sample);
+  for (const auto& [topic, sample] : sample_) sink_.publish(*topic, sample);
+  sample_.clear();
 }
 
 void Member::sample_plant(std::int64_t index, std::int64_t time_ns, std::int64_t period_ns) {

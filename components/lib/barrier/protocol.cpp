@@ -12,12 +12,12 @@ struct BlockReader {
   std::string_view block;
   bool ok = true;
 
-  std::string bytes(std::uint64_t size) {
+  std::string_view bytes(std::uint64_t size) {
     if (size > block.size()) {
       ok = false;
       return {};
     }
-    std::string taken(block.substr(0, size));
+    const std::string_view taken = block.substr(0, size);
     block.remove_prefix(size);
     return taken;
   }
@@ -78,8 +78,10 @@ std::optional<std::string> difference(const Hello& hello, const Hello& ours) {
   return all;
 }
 
-std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs) {
-  std::string block;
+std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs,
+                            std::string memory) {
+  std::string block = std::move(memory);
+  block.clear();
   if (state.empty() && outputs.empty()) return block;
   std::size_t size = 2 * sizeof(std::uint64_t) + state.size();
   for (const auto& output : outputs) size += 1 + sizeof(std::uint64_t) + output.bytes.size();
@@ -96,19 +98,19 @@ std::string pack_checkpoint(const std::string& state, const std::vector<TickDone
 }
 
 bool unpack_checkpoint(std::string_view block, std::string& state, std::vector<TickDone::Written>& outputs) {
-  state.clear();
-  outputs.clear();
-  if (block.empty()) return true;
   BlockReader reader{block};
-  state = reader.bytes(reader.number());
-  const std::uint64_t count = reader.number();
-  for (std::uint64_t i = 0; i < count && reader.ok; ++i) {
-    const std::string topic = reader.bytes(1);
-    TickDone::Written output{topic.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(topic[0]),
-                             reader.bytes(reader.number())};
+  state = block.empty() ? std::string_view() : reader.bytes(reader.number());
+  const std::uint64_t count = block.empty() ? 0 : reader.number();
+  std::uint64_t found = 0;
+  for (; found < count && reader.ok; ++found) {
+    if (found == outputs.size()) outputs.emplace_back();
+    TickDone::Written& output = outputs[found];
+    const std::string_view topic = reader.bytes(1);
+    output.topic = topic.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(topic[0]);
+    output.bytes = reader.bytes(reader.number());
     reader.ok &= output.topic < topics::kCount;
-    outputs.push_back(std::move(output));
   }
+  outputs.resize(found);
   if (reader.ok && reader.block.empty()) return true;
   state.clear();
   outputs.clear();

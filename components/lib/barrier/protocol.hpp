@@ -97,10 +97,12 @@ struct Resume {
 };
 
 /// Packs a checkpoint for the wire, little-endian: length of the state (u64), the state, number of outputs (u64), and
-/// of each output its topic id (u8), length (u64) and bytes. Empty if there is neither state nor output.
-std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs);
+/// of each output its topic id (u8), length (u64) and bytes. Empty if there is neither state nor output. The result
+/// uses the memory of `memory`, whose content is lost.
+std::string pack_checkpoint(const std::string& state, const std::vector<TickDone::Written>& outputs,
+                            std::string memory = {});
 /// The inverse. Any process may send the bytes: returns false, and leaves `state` and `outputs` empty, unless they are
-/// exactly one checkpoint whose outputs belong to known topics.
+/// exactly one checkpoint whose outputs belong to known topics. Both keep the memory that they have.
 bool unpack_checkpoint(std::string_view block, std::string& state, std::vector<TickDone::Written>& outputs);
 
 }  // namespace constrictor

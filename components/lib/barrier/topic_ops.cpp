@@ -28,6 +28,18 @@ struct HeaderFinder {
   }
 };
 
+/// Visits the fields of a header and writes them as reflect::ByteWriter does, but into memory of fixed size.
+struct HeaderWriter {
+  std::span<std::byte> left;
+  template <class T>
+  void operator()(const FieldInfo&, const T& value) {
+    static_assert(std::is_arithmetic_v<T>);
+    if (left.size() < sizeof value) std::abort();  // a bug: HeaderBytes is shorter than a header
+    std::memcpy(left.data(), &value, sizeof value);
+    left = left.subspan(sizeof value);
+  }
+};
+
 template <class T>
 TopicOps make_ops(const Topic<T>& topic) {
   TopicOps ops{topic, sizeof(T), nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
@@ -86,12 +98,11 @@ std::string neutral_message(std::size_t topic_id, std::string bytes) {
 }
 
 HeaderBytes header_bytes(const msg::Header& header) {
-  std::string bytes;
-  canonical_bytes(header, bytes);
-  HeaderBytes result{};
-  if (bytes.size() != result.size()) std::abort();  // a bug: HeaderBytes is not as long as a header
-  std::memcpy(result.data(), bytes.data(), result.size());
-  return result;
+  HeaderBytes bytes{};
+  HeaderWriter writer{bytes};
+  Description<msg::Header>::visit(header, writer);
+  if (!writer.left.empty()) std::abort();  // a bug: HeaderBytes is longer than a header
+  return bytes;
 }
 
 msg::Header parse_header(std::span<const std::byte, kHeaderSize> bytes) {

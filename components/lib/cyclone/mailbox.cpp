@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <dlfcn.h>
+#include <fmt/format.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <pthread.h>
@@ -53,10 +54,9 @@ Receive receive_of_c_library() {
 /// it with the socket, and like the ports it belongs to a network namespace.
 struct Address {
   explicit Address(std::uint16_t port) {
-    const std::string name = "constrictor.mailbox." + std::to_string(port);
     un.sun_family = AF_UNIX;
-    std::memcpy(un.sun_path + 1, name.data(), name.size());
-    size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+    const auto name = fmt::format_to_n(un.sun_path + 1, sizeof un.sun_path - 1, "constrictor.mailbox.{}", port);
+    size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size);
   }
   [[nodiscard]] const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&un); }
   sockaddr_un un{};

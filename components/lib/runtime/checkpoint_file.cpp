@@ -125,29 +125,29 @@ void CheckpointFile::grow(std::size_t least) {
 }
 
 void CheckpointFile::add_free(std::uint64_t offset, std::uint64_t size) {
-  auto next = free_.lower_bound(offset);
-  if (next != free_.end() && offset + size == next->first) {
-    size += next->second;
+  auto next = std::ranges::lower_bound(free_, offset, {}, &Free::offset);
+  if (next != free_.end() && offset + size == next->offset) {
+    size += next->size;
     next = free_.erase(next);
   }
   if (next != free_.begin()) {
     const auto previous = std::prev(next);
-    if (previous->first + previous->second == offset) {
-      previous->second += size;
+    if (previous->offset + previous->size == offset) {
+      previous->size += size;
       return;
     }
   }
-  free_.emplace(offset, size);
+  free_.insert(next, {offset, size});
 }
 
 std::uint64_t CheckpointFile::allocate(std::size_t size) {
   const std::uint64_t wanted = rounded(std::max<std::size_t>(size, 1));
   for (;;) {
     for (auto at = free_.begin(); at != free_.end(); ++at) {
-      if (at->second < wanted) continue;
-      const auto [offset, length] = *at;
-      free_.erase(at);
-      if (length > wanted) free_.emplace(offset + wanted, length - wanted);
+      if (at->size < wanted) continue;
+      const std::uint64_t offset = at->offset;
+      if (at->size == wanted) free_.erase(at);
+      else *at = {offset + wanted, at->size - wanted};
       return offset;
     }
     grow(size_ + wanted);
@@ -160,11 +160,18 @@ void CheckpointFile::release(const Part& part) {
 
 void CheckpointFile::reserve(const Part& part) {
   const std::uint64_t end = part.offset + rounded(std::max<std::uint64_t>(part.size, 1));
-  auto at = std::prev(free_.upper_bound(part.offset));
+  const auto at = std::prev(std::ranges::upper_bound(free_, part.offset, {}, &Free::offset));
   const auto [offset, length] = *at;
   free_.erase(at);
-  if (offset < part.offset) free_.emplace(offset, part.offset - offset);
-  if (offset + length > end) free_.emplace(end, offset + length - end);
+  if (offset < part.offset) add_free(offset, part.offset - offset);
+  if (offset + length > end) add_free(end, offset + length - end);
+}
+
+CheckpointFile::Stored& CheckpointFile::store(const Blob& blob, std::size_t sorted) {
+  const auto end = stored_.begin() + static_cast<std::ptrdiff_t>(sorted);
+  const auto found = std::ranges::lower_bound(stored_.begin(), end, blob, {}, &Stored::blob);
+  if (found != end && found->blob == blob) return *found;
+  return stored_.emplace_back(Stored{blob, put(blob->data(), blob->size()), 0});
 }
 
 CheckpointFile::Part CheckpointFile::put(const char* bytes, std::size_t size) {
@@ -176,12 +183,13 @@ CheckpointFile::Part CheckpointFile::put(const char* bytes, std::size_t size) {
 void CheckpointFile::write(const Checkpoint& checkpoint) {
   ++number_;
   table_.clear();
+  const std::size_t sorted = stored_.size();
   for (const Blob& blob : checkpoint.blobs) {
-    auto& stored = stored_[blob.get()];
-    if (!stored.blob) stored = {blob, put(blob->data(), blob->size()), 0};
+    Stored& stored = store(blob, sorted);
     stored.last_used = number_;
     table_.append(reinterpret_cast<const char*>(&stored.part), sizeof stored.part);
   }
+  std::ranges::sort(stored_, {}, &Stored::blob);
   table_ += checkpoint.head;
   const Part table = put(table_.data(), table_.size());
   Slot& next = slot(number_);
@@ -196,9 +204,9 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
   next.checksum = next.own_checksum();
   // Memory that only the checkpoint before the previous one used is free now.
   release(std::exchange(table_of_last_but_one_, std::exchange(table_of_last_, table)));
-  std::erase_if(stored_, [this](const auto& entry) {
-    if (entry.second.last_used + 1 >= number_) return false;
-    release(entry.second.part);
+  std::erase_if(stored_, [this](const Stored& stored) {
+    if (stored.last_used + 1 >= number_) return false;
+    release(stored.part);
     return true;
   });
 }
@@ -253,8 +261,9 @@ std::optional<Checkpoint> CheckpointFile::read() {
     table_of_last_ = slot(which).table;
     for (const auto& [i, part] : parts) {
       reserve(part);
-      stored_[checkpoint->blobs[i].get()] = {checkpoint->blobs[i], part, number_};
+      stored_.push_back({checkpoint->blobs[i], part, number_});
     }
+    std::ranges::sort(stored_, {}, &Stored::blob);
     return checkpoint;
   }
   throw failure(path_, "both checkpoints in it are damaged; the run cannot be continued from this file");

@@ -9,7 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
+#include <vector>
 
 #include "barrier/checkpoint.hpp"
 
@@ -60,11 +60,17 @@ class CheckpointFile {
     std::uint64_t size = 0;
     std::uint64_t checksum = 0;
   };
+  struct Free {  ///< a piece of the file that no checkpoint uses
+    std::uint64_t offset;
+    std::uint64_t size;
+  };
   struct Stored {
-    Blob blob;  ///< keeps the address, which is the key, in use
+    Blob blob;  ///< keeps the address, by which it is found, in use
     Part part;
     std::uint64_t last_used = 0;  ///< newest checkpoint that contains it
   };
+  /// Where a blob is stored. If it is not among the first `sorted` ones, it is stored behind the last one.
+  Stored& store(const Blob& blob, std::size_t sorted);
   [[nodiscard]] Slot& slot(std::uint64_t number) const;
   [[nodiscard]] std::optional<Checkpoint> read_slot(const Slot& slot, std::map<std::size_t, Part>& parts) const;
   [[nodiscard]] bool holds(const Part& part) const;
@@ -79,9 +85,9 @@ class CheckpointFile {
   int descriptor_ = -1;
   char* data_ = nullptr;
   std::size_t size_ = 0;
-  std::uint64_t number_ = 0;                               ///< of the newest checkpoint; 0: none
-  std::map<std::uint64_t, std::uint64_t> free_;            ///< size by offset
-  std::unordered_map<const std::string*, Stored> stored_;  ///< looked up, and walked through only to remove
+  std::uint64_t number_ = 0;    ///< of the newest checkpoint; 0: none
+  std::vector<Free> free_;      ///< in the order of their offsets
+  std::vector<Stored> stored_;  ///< in the order of their blobs' addresses
   Part table_of_last_, table_of_last_but_one_;
   std::string table_;
   bool one_slot_damaged_ = false;

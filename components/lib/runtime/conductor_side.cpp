@@ -112,11 +112,13 @@ void ConductorSide::take_done(const msg::TickDone& message) {
   const auto reject = [this](const std::string& reason) { members_.reject(wire::kTickDone, reason); };
   if (const auto why = conductor_->foreign(message.component, {message.run_id, message.epoch}, message.incarnation))
     return reject(*why);
-  const auto step = from_wire(message);
+  TickDone& last = last_done_[message.component];
+  auto step = from_wire(message, std::move(last));
   if (!step) return reject("checkpoint: damaged");
   if (conductor_->is_early(*step)) early_.push_back(*step);
   else if (const auto why = conductor_->implausible(*step)) reject(*why);
   else use_done(*step);
+  last = std::move(*step);
 }
 
 void ConductorSide::use_done(const TickDone& step) {

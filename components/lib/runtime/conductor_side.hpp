@@ -115,7 +115,10 @@ class ConductorSide : private ConductorSink {
   Pacer pacer_;
   std::unique_ptr<RunStore> store_;  ///< null: this run keeps no checkpoints
   Blob control_answers_bytes_;       ///< of control_answers_; null: to be made anew
-  std::vector<TickDone> early_;      ///< of a tick that the predecessor of this conductor has sent, and it not yet
+  Checkpoint checkpoint_;            ///< the last one; kept for its memory, like the next two
+  std::string head_of_conductor_;
+  std::map<std::string, TickDone> last_done_;  ///< of each member in another process
+  std::vector<TickDone> early_;  ///< of a tick that the predecessor of this conductor has sent, and it not yet
   std::unique_ptr<HashLog> hash_log_;
   std::unique_ptr<RunRecorder> recorder_;
   std::unique_ptr<Conductor> conductor_;

@@ -40,12 +40,14 @@ void ConductorSide::save() {
   flush_hash_log();
   if (!control_answers_bytes_)
     control_answers_bytes_ = std::make_shared<const std::string>(save_bytes(control_answers_));
-  Checkpoint checkpoint = conductor_->save();
+  checkpoint_ = conductor_->save(std::move(checkpoint_));
   const RecordingPosition recording = recorder_ ? recorder_->position() : RecordingPosition{};
   const StopOrders::Arrived stops = plant_.stop_orders() ? plant_.stop_orders()->waiting() : StopOrders::Arrived{};
-  checkpoint.head = save_bytes(checkpoint.head, hash_log_ ? hash_log_->length() : 0, recording, pacer_, ended_, stops);
-  checkpoint.blobs.push_back(control_answers_bytes_);
-  store_->write(checkpoint);
+  BytesWriter head(std::move(head_of_conductor_));
+  head(checkpoint_.head, hash_log_ ? hash_log_->length() : 0, recording, pacer_, ended_, stops);
+  head_of_conductor_ = std::exchange(checkpoint_.head, head.take());
+  checkpoint_.blobs.push_back(control_answers_bytes_);
+  store_->write(checkpoint_);
 }
 
 void ConductorSide::make_successor(ConductorOptions options, const Checkpoint& found) {

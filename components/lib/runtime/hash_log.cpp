@@ -115,9 +115,9 @@ std::optional<std::int64_t> HashLog::full_disk_at(const std::filesystem::path& d
 }
 
 void HashLog::add(const TopicInfo& topic, const Sample& sample) {
-  std::string bytes;
-  topic_ops(topic.id).append_bytes(sample.message.get(), bytes);
-  add(topic.id, bytes);
+  message_.clear();
+  topic_ops(topic.id).append_bytes(sample.message.get(), message_);
+  add(topic.id, message_);
 }
 
 MessageHasher::MessageHasher() : state_(XXH3_createState()) {

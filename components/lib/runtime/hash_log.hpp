@@ -52,7 +52,8 @@ class HashLog {
   void write_header(std::int64_t incomplete_from) const;
   std::filesystem::path path_;
   int descriptor_ = -1;
-  std::string buffer_;  ///< not yet in the file
+  std::string buffer_;   ///< not yet in the file
+  std::string message_;  ///< the bytes of one
   std::uint64_t length_ = 0;
   std::int64_t newest_tick_ = 0;
   bool full_ = false;

@@ -279,9 +279,8 @@ void MemberSide::publish(const TopicInfo& topic, const Sample& sample) {
 
 void MemberSide::done(const TickDone& step) {
   if (conductor_) return conductor_->on_done(step);
-  std::string block;
   dds::GatheredSends::wake_receivers();
-  done_writer_.write(to_wire(step, block));
+  done_writer_.write(to_wire(step, checkpoint_block_));
 }
 
 }  // namespace constrictor

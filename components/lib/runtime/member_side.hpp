@@ -129,6 +129,7 @@ class MemberSide : private MemberSink {
   std::vector<LocalMember> members_;
   Member* plant_ = nullptr;
   ConductorSide* conductor_ = nullptr;  ///< null: it is in another process
+  std::string checkpoint_block_;        ///< of the last TickDone; kept for its memory
   std::unique_ptr<MemberBus> bus_;
   std::unique_ptr<ClientLink> client_link_;  ///< null: no member of this process takes requests
   dds::Reader<msg::Tick> tick_reader_;

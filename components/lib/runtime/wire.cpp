@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "constrictor/hex.hpp"
 #include "cyclone/run_token.hpp"
@@ -37,13 +38,11 @@ Message identity_to_wire(const Value& value) {
 }
 
 template <class Value, class Message>
-Value identity_from_wire(const Message& message) {
-  Value value;
+void identity_from_wire(const Message& message, Value& value) {
   value.component = message.component;
   value.epoch = {message.run_id, message.epoch};
   value.incarnation = message.incarnation;
   value.index = message.index;
-  return value;
 }
 
 }  // namespace
@@ -63,12 +62,15 @@ msg::TickDone to_wire(const TickDone& done, std::string& block) {
     message.consumed[i] = {done.consumed[i].topic, done.consumed[i].count};
   std::copy(done.output_hash.begin(), done.output_hash.end(), message.output_hash);
   message.end_of_run = done.end_of_run;
-  message.checkpoint = borrow(block = pack_checkpoint(done.state, done.written));
+  message.checkpoint = borrow(block = pack_checkpoint(done.state, done.written, std::move(block)));
   return message;
 }
 
-std::optional<TickDone> from_wire(const msg::TickDone& message) {
-  auto done = identity_from_wire<TickDone>(message);
+std::optional<TickDone> from_wire(const msg::TickDone& message, TickDone memory) {
+  TickDone done = std::move(memory);
+  identity_from_wire(message, done);
+  done.published.clear();
+  done.consumed.clear();
   for (std::size_t i = 0; i < std::min<std::size_t>(message.published_count, std::size(message.published)); ++i) {
     done.published.push_back({message.published[i].topic, message.published[i].count});
   }
@@ -128,12 +130,13 @@ Hello from_wire(const msg::Hello& message) {
 msg::Resume to_wire(const Resume& resume, std::string& block) {
   auto message = identity_to_wire<msg::Resume>(resume);
   message.seed = resume.seed;
-  message.checkpoint = borrow(block = pack_checkpoint(resume.state, resume.outputs));
+  message.checkpoint = borrow(block = pack_checkpoint(resume.state, resume.outputs, std::move(block)));
   return message;
 }
 
 std::optional<Resume> from_wire(const msg::Resume& message) {
-  auto resume = identity_from_wire<Resume>(message);
+  Resume resume;
+  identity_from_wire(message, resume);
   resume.seed = message.seed;
   if (!unpack_checkpoint(bytes_of(message.checkpoint), resume.state, resume.outputs)) return {};
   return resume;

@@ -13,8 +13,9 @@ namespace constrictor {
 /// The message points to the bytes in `block`, which must outlive it. Throws std::logic_error if the member reads or
 /// writes more topics than the message has room for.
 msg::TickDone to_wire(const TickDone& done, std::string& block);
-/// `message` must have passed validate(). Returns nothing if the checkpoint is damaged.
-std::optional<TickDone> from_wire(const msg::TickDone& message);
+/// `message` must have passed validate(). Returns nothing if the checkpoint is damaged. The result uses the memory of
+/// `memory`, whose content is lost.
+std::optional<TickDone> from_wire(const msg::TickDone& message, TickDone memory = {});
 /// The proof of a Hello that is sent by this participant: HMAC-SHA-256, keyed with the token, of the lines "hello", run
 /// id, component, incarnation, and participant (24 hexadecimal digits), joined by line feeds. A proof that was read
 /// from the network is worth nothing to another participant.
