@@ -202,9 +202,15 @@ void ChainDynamics::move(std::size_t body, const Vector3d& by_m) {
   state.angular_velocity_rad_s.setZero();
 }
 
+std::size_t ChainDynamics::memory_size() const {
+  const std::size_t free_bodies = 1 + bodies_.size() - module_count();
+  return 19 * free_bodies + 3 * models_.size();
+}
+
 // The head, the joints and the objects are the whole memory: everything else follows from them.
 std::vector<double> ChainDynamics::save() const {
   std::vector<double> memory;
+  memory.reserve(memory_size());
   const auto append = [&](const auto& vector) {
     memory.insert(memory.end(), vector.data(), vector.data() + vector.size());
   };
@@ -223,8 +229,7 @@ std::vector<double> ChainDynamics::save() const {
 }
 
 void ChainDynamics::load(std::span<const double> memory) {
-  const std::size_t free_bodies = 1 + bodies_.size() - module_count();
-  check_size(memory.size(), 19 * free_bodies + 3 * models_.size());
+  check_size(memory.size(), memory_size());
   const double* from = memory.data();
   const auto take = [&](auto&& vector) {
     std::copy_n(from, vector.size(), vector.data());

@@ -40,6 +40,8 @@ class ChainDynamics : public Dynamics {
   /// Groups the bodies that touch each other, directly or over others, and solves for each group.
   void solve_groups(std::span<const SolverContact> contacts);
   void integrate();
+  /// How many numbers save() returns.
+  [[nodiscard]] std::size_t memory_size() const;
   /// The spatial momentum of the chain about the origin of W, and the matrix that turns a velocity which all modules
   /// share into such a momentum.
   [[nodiscard]] std::pair<Vector6d, Matrix6d> momentum() const;

@@ -42,21 +42,21 @@ void ChainSystem::assemble_chain() {
     const Index row = static_cast<Index>(5 + k);
     const Joint& joint = joints_[k - 1];
     const Vector6d momentum = stiffness_[k] * joint.axis;
-    hessian_(row, row) = joint.axis.dot(momentum) + step_s_ * joint.slope(joint.rate_rad_s);
+    now_->hessian(row, row) = joint.axis.dot(momentum) + step_s_ * joint.slope(joint.rate_rad_s);
     for (std::size_t j = k - 1; j > 0; --j)
-      hessian_(row, static_cast<Index>(5 + j)) = joints_[j - 1].axis.dot(momentum);
-    hessian_.row(row).head<6>() = momentum.transpose();
+      now_->hessian(row, static_cast<Index>(5 + j)) = joints_[j - 1].axis.dot(momentum);
+    now_->hessian.row(row).head<6>() = momentum.transpose();
     stiffness_[k - 1] += stiffness_[k];
   }
-  hessian_.topLeftCorner<6, 6>() = stiffness_[0];
+  now_->hessian.topLeftCorner<6, 6>() = stiffness_[0];
 }
 
 // The rows of the objects: with themselves, with objects before them, and with the chain.
 void ChainSystem::assemble_objects() {
   for (std::size_t o = 0; o < objects_.size(); ++o) {
     const Index row = offsets_[objects_[o]];
-    hessian_.middleRows<6>(row).leftCols(row).setZero();
-    hessian_.block<6, 6>(row, row) = stiffness_[objects_[o]];
+    now_->hessian.middleRows<6>(row).leftCols(row).setZero();
+    now_->hessian.block<6, 6>(row, row) = stiffness_[objects_[o]];
   }
   for (const std::size_t object : objects_) {
     const Index row = offsets_[object];
@@ -80,16 +80,16 @@ void ChainSystem::assemble_objects() {
         if (is_module(other)) {
           coupling_[other].noalias() += mine * others.transpose();
         } else {
-          hessian_.block<6, 6>(row, offsets_[other]).noalias() += mine * others.transpose();
+          now_->hessian.block<6, 6>(row, offsets_[other]).noalias() += mine * others.transpose();
         }
       }
     }
     if (!touched) continue;
     for (std::size_t k = modules_ - 1; k > 0; --k) {
-      hessian_.block<6, 1>(row, static_cast<Index>(5 + k)).noalias() = coupling_[k] * joints_[k - 1].axis;
+      now_->hessian.block<6, 1>(row, static_cast<Index>(5 + k)).noalias() = coupling_[k] * joints_[k - 1].axis;
       coupling_[k - 1] += coupling_[k];
     }
-    hessian_.block<6, 6>(row, 0) = coupling_[0];
+    now_->hessian.block<6, 6>(row, 0) = coupling_[0];
   }
 }
 
@@ -103,33 +103,33 @@ void ChainSystem::add_self_contact(const Contact& contact) {
   const auto at = static_cast<Index>(6 + front);  // row of the joint behind the module `front`
   for (std::size_t i = 0; i < slope.count; ++i) {
     const Vector6d wrench = on_back * slope.terms[i].axis;
-    for (Index j = 0; j < count; ++j) step_[j] = joints_[front + static_cast<std::size_t>(j)].axis.dot(wrench);
-    hessian_.block(at, at, count, count).noalias() +=
-        (step_s_ * slope.terms[i].slope) * step_.head(count) * step_.head(count).transpose();
+    for (Index j = 0; j < count; ++j) now_->step[j] = joints_[front + static_cast<std::size_t>(j)].axis.dot(wrench);
+    now_->hessian.block(at, at, count, count).noalias() +=
+        (step_s_ * slope.terms[i].slope) * now_->step.head(count) * now_->step.head(count).transpose();
   }
 }
 
 void ChainSystem::find_step() {
-  step_ = -gradient_;
+  now_->step = -now_->gradient;
   if (!with_chain_ || folded_) {
-    factor_.compute(hessian_);
-    factor_.solveInPlace(step_);
+    now_->factor.compute(now_->hessian);
+    now_->factor.solveInPlace(now_->step);
     return;
   }
   const Index chain = static_cast<Index>(6 + joints_.size());
   const Index objects = size_ - chain;
-  chain_factor_.solve(step_.head(chain));
+  chain_factor_.solve(now_->step.head(chain));
   if (objects == 0) return;
   // The chain is eliminated from the equations of the objects (Schur complement).
-  const auto coupling = hessian_.bottomLeftCorner(objects, chain);
-  auto remaining = hessian_.bottomRightCorner(objects, objects);
-  response_ = coupling;
-  for (Index row = 0; row < objects; row += 6) chain_factor_.solve_six(response_.middleRows<6>(row));
-  remaining.triangularView<Eigen::Lower>() -= response_ * coupling.transpose();
-  step_.tail(objects).noalias() -= coupling * step_.head(chain);
-  factor_.compute(remaining);
-  step_.tail(objects) = factor_.solve(step_.tail(objects));
-  step_.head(chain).noalias() -= response_.transpose() * step_.tail(objects);
+  const auto coupling = now_->hessian.bottomLeftCorner(objects, chain);
+  auto remaining = now_->hessian.bottomRightCorner(objects, objects);
+  now_->response = coupling;
+  for (Index row = 0; row < objects; row += 6) chain_factor_.solve_six(now_->response.middleRows<6>(row));
+  remaining.triangularView<Eigen::Lower>() -= now_->response * coupling.transpose();
+  now_->step.tail(objects).noalias() -= coupling * now_->step.head(chain);
+  now_->factor.compute(remaining);
+  now_->step.tail(objects) = now_->factor.solve(now_->step.tail(objects));
+  now_->step.head(chain).noalias() -= now_->response.transpose() * now_->step.tail(objects);
 }
 
 }  // namespace constrictor

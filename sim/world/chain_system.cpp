@@ -49,9 +49,10 @@ void ChainSystem::begin(bool with_chain, std::span<const std::size_t> objects) {
   coupling_.resize(modules_);
   hinges_.resize(joints_.size());
   relative_.assign(bodies_.size(), Vector6d::Zero());
-  gradient_.resize(size_);
-  step_.resize(size_);
-  hessian_.resize(size_, size_);
+  now_ = &unknowns_[size_];
+  now_->gradient.resize(size_);
+  now_->step.resize(size_);
+  now_->hessian.resize(size_, size_);
   folded_ = with_chain && std::ranges::any_of(active_, [&](std::size_t index) { return is_self(contacts_[index]); });
   rates_before_rad_s_.clear();
   for (const Joint& joint : joints_) rates_before_rad_s_.push_back(joint.rate_rad_s);
@@ -76,22 +77,23 @@ double ChainSystem::evaluate() {
   if (with_chain_) {
     for (std::size_t k = modules_ - 1; k > 0; --k) {
       const Joint& joint = joints_[k - 1];
-      gradient_[static_cast<Index>(5 + k)] = joint.axis.dot(wrench_[k]) - step_s_ * joint.torque_nm(joint.rate_rad_s);
+      now_->gradient[static_cast<Index>(5 + k)] =
+          joint.axis.dot(wrench_[k]) - step_s_ * joint.torque_nm(joint.rate_rad_s);
       wrench_[k - 1] += wrench_[k];
     }
-    gradient_.head<6>() = wrench_[0];
+    now_->gradient.head<6>() = wrench_[0];
   }
-  for (const std::size_t object : objects_) gradient_.segment<6>(offsets_[object]) = wrench_[object];
-  return gradient_.cwiseAbs().maxCoeff();
+  for (const std::size_t object : objects_) now_->gradient.segment<6>(offsets_[object]) = wrench_[object];
+  return now_->gradient.cwiseAbs().maxCoeff();
 }
 
 void ChainSystem::spread() {
   if (with_chain_) {
-    change_[0] = step_.head<6>();
+    change_[0] = now_->step.head<6>();
     for (std::size_t k = 1; k < modules_; ++k)
-      change_[k] = change_[k - 1] + joints_[k - 1].axis * step_[static_cast<Index>(5 + k)];
+      change_[k] = change_[k - 1] + joints_[k - 1].axis * now_->step[static_cast<Index>(5 + k)];
   }
-  for (const std::size_t object : objects_) change_[object] = step_.segment<6>(offsets_[object]);
+  for (const std::size_t object : objects_) change_[object] = now_->step.segment<6>(offsets_[object]);
   for (const std::size_t index : active_) {
     Contact& contact = contacts_[index];
     contact.change_m_s = contact.on_first.transpose() * change_[contact.first];
@@ -113,7 +115,7 @@ double ChainSystem::derivative(double share) const {
     work -= step_s_ * contact.change_m_s.dot(contact.law.force_n(contact.velocity_m_s + share * contact.change_m_s));
   }
   for (std::size_t j = 0; with_chain_ && j < joints_.size(); ++j) {
-    const double change = step_[static_cast<Index>(6 + j)];
+    const double change = now_->step[static_cast<Index>(6 + j)];
     work -= step_s_ * change * joints_[j].torque_nm(joints_[j].rate_rad_s + share * change);
   }
   return work;
@@ -121,10 +123,10 @@ double ChainSystem::derivative(double share) const {
 
 // The derivative never falls with the share, because the function is convex.
 double ChainSystem::search() const {
-  const double flat = kFlat * std::abs(gradient_.dot(step_));
+  const double flat = kFlat * std::abs(now_->gradient.dot(now_->step));
   double low = 0.0;
   double high = 1.0;
-  double at_low = gradient_.dot(step_);
+  double at_low = now_->gradient.dot(now_->step);
   double at_high = derivative(high);
   while (at_high < -flat && high < 16.0) {
     low = high;
@@ -145,10 +147,10 @@ double ChainSystem::search() const {
 
 void ChainSystem::begin_as_before() {
   if (with_chain_) {
-    step_.head<6>() = bodies_[0].change;
-    for (std::size_t j = 0; j < joints_.size(); ++j) step_[static_cast<Index>(6 + j)] = joints_[j].change_rad_s;
+    now_->step.head<6>() = bodies_[0].change;
+    for (std::size_t j = 0; j < joints_.size(); ++j) now_->step[static_cast<Index>(6 + j)] = joints_[j].change_rad_s;
   }
-  for (const std::size_t object : objects_) step_.segment<6>(offsets_[object]) = bodies_[object].change;
+  for (const std::size_t object : objects_) now_->step.segment<6>(offsets_[object]) = bodies_[object].change;
   spread();
   move(1.0);
 }
@@ -165,7 +167,7 @@ void ChainSystem::move(double share) {
     bodies_[b].velocity += share * change_[b];
   }
   for (std::size_t j = 0; with_chain_ && j < joints_.size(); ++j)
-    joints_[j].rate_rad_s += share * step_[static_cast<Index>(6 + j)];
+    joints_[j].rate_rad_s += share * now_->step[static_cast<Index>(6 + j)];
   for (const std::size_t index : active_) contacts_[index].velocity_m_s += share * contacts_[index].change_m_s;
 }
 

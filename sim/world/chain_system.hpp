@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cstddef>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -78,6 +79,15 @@ class ChainSystem {
             double step_s);
 
  private:
+  /// What has a size that depends on the part of the scene that is solved.
+  struct Unknowns {
+    Eigen::VectorXd gradient;
+    Eigen::VectorXd step;
+    Eigen::MatrixXd hessian;  // its rows of the chain are used only if the chain is folded
+    Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor;
+    Eigen::MatrixXd response;  // of the chain to each unknown of the objects
+  };
+
   void begin(bool with_chain, std::span<const std::size_t> objects);
   /// Sets the bounds of friction, the forces and the gradient at the present velocities. Returns its largest entry.
   double evaluate();
@@ -86,12 +96,12 @@ class ChainSystem {
   void assemble_chain();
   void assemble_objects();
   void add_self_contact(const Contact& contact);
-  /// `step_` from the matrix and the gradient.
+  /// `Unknowns::step` from the matrix and the gradient.
   void find_step();
-  /// The changes of the last step as `step_`: the bodies probably accelerate as before.
+  /// The changes of the last step as `Unknowns::step`: the bodies probably accelerate as before.
   void begin_as_before();
   void remember_changes();
-  /// The change of all velocities that belongs to `step_`.
+  /// The change of all velocities that belongs to `Unknowns::step`.
   void spread();
   /// Derivative of the function that the solution minimises, along the step, after this share of the step.
   [[nodiscard]] double derivative(double share) const;
@@ -123,13 +133,10 @@ class ChainSystem {
   std::vector<Matrix6d> stiffness_;  // of each body with its contacts, later of each module and all behind it
   std::vector<Matrix6d> coupling_;   // of each module with one object
   std::vector<double> rates_before_rad_s_;
-  Eigen::VectorXd gradient_;
-  Eigen::VectorXd step_;
-  Eigen::MatrixXd hessian_;  // its rows of the chain are used only if the chain is folded
-  Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> factor_;
+  std::map<Eigen::Index, Unknowns> unknowns_;  // by size_: to resize one of them would allocate memory in each step
+  Unknowns* now_ = nullptr;                    // those of the part that is solved at present
   std::vector<ChainFactor::Joint> hinges_;
   ChainFactor chain_factor_;
-  Eigen::MatrixXd response_;     // of the chain to each unknown of the objects
   double inertia_before_ = 0.0;  // derivative() without contacts and joints is inertia_before_ + share inertia_slope_
   double inertia_slope_ = 0.0;
 };

@@ -105,11 +105,12 @@ std::vector<ModuleContact> ContactSet::felt() const {
     contact.position_m = sum.position / sum.weight;
     contact.normal = sum.normal.normalized();
     contact.force_n = sum.force / steps_;
-    contacts.push_back(contact);
+    // In front of all weaker ones. A stable sort would allocate memory.
+    const auto stronger = [](const ModuleContact& a, const ModuleContact& b) {
+      return a.force_n.squaredNorm() > b.force_n.squaredNorm();
+    };
+    contacts.insert(std::upper_bound(contacts.begin(), contacts.end(), contact, stronger), contact);
   }
-  std::stable_sort(contacts.begin(), contacts.end(), [](const ModuleContact& a, const ModuleContact& b) {
-    return a.force_n.squaredNorm() > b.force_n.squaredNorm();
-  });
   return contacts;
 }
 

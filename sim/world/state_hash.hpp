@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <span>
 
+#include "constrictor/sha256.hpp"
+
 namespace constrictor {
 
 class StateHash {
  public:
-  using Digest = std::array<std::uint8_t, 32>;
+  using Digest = Sha256::Digest;
 
   /// chain := SHA-256(chain, raw bytes of the values in this order).
   void extend(std::span<const double> values);
@@ -23,6 +25,7 @@ class StateHash {
 
  private:
   Digest digest_{};
+  Sha256 hash_;
 };
 
 }  // namespace constrictor
