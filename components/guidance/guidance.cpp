@@ -46,6 +46,8 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, b
   const bool upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) > 0.8;
   if (upright && body_.contacts && !guidance::implausible(*body_.contacts) &&
       body_.contacts->module_count >= model_.module_count) {
+    input.load_n.reserve(model_.module_count);
+    input.ground.reserve(model_.module_count);
     for (std::size_t i = 0; i < model_.module_count; ++i) {
       const msg::Vector3& f = body_.contacts->force_n[i];
       input.load_n.push_back(f.z);

@@ -6,11 +6,24 @@
 #include "perception/gauge.hpp"
 
 namespace constrictor::perception {
+namespace {
 
-std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
-                                  const PerceptionConfig& config, std::uint8_t line_colour, const ObjectSizes& sizes,
-                                  MeasuredSizes& measured) {
-  std::vector<msg::Blob> blobs;
+/// Adds a blob behind all that are at least as large. If there are too many, the last one is dropped.
+void add(Blobs& blobs, const msg::Blob& blob) {
+  const auto larger = [](const msg::Blob& a, const msg::Blob& b) { return a.area_fraction > b.area_fraction; };
+  if (blobs.full()) {
+    if (!larger(blob, blobs.back())) return;
+    blobs.pop_back();
+  }
+  blobs.push_back(blob);
+  std::rotate(std::upper_bound(blobs.begin(), blobs.end() - 1, blob, larger), blobs.end() - 1, blobs.end());
+}
+
+}  // namespace
+
+Blobs find_blobs(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera, const PerceptionConfig& config,
+                 std::uint8_t line_colour, const ObjectSizes& sizes, MeasuredSizes& measured) {
+  Blobs blobs;
   std::array<int, msg::kColourCount> measured_area{};
   for (std::size_t i = 0; i < regions.regions.size(); ++i) {
     const Region& region = regions.regions[i];
@@ -27,22 +40,19 @@ std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, co
         with_zone = flat_pixels > std::max(2 * config.min_area_pixels, stray);
       }
       const bool on_zone = region.on_zone || (with_zone && nearer);
-      if (const auto blob = gauge.object(on_zone, size)) blobs.push_back(*blob);
+      if (const auto blob = gauge.object(on_zone, size)) add(blobs, *blob);
       // Of several objects of one colour the nearest one is measured best, and it is the largest in most images.
       if (size.images > 0 && region.area > measured_area[region.colour]) {
         measured_area[region.colour] = region.area;
         measured[region.colour] = size;
       }
       if (with_zone) {
-        if (const auto blob = gauge.zone()) blobs.push_back(*blob);
+        if (const auto blob = gauge.zone()) add(blobs, *blob);
       }
     } else if (const auto blob = gauge.zone()) {
-      blobs.push_back(*blob);
+      add(blobs, *blob);
     }
   }
-  std::stable_sort(blobs.begin(), blobs.end(),
-                   [](const msg::Blob& a, const msg::Blob& b) { return a.area_fraction > b.area_fraction; });
-  if (blobs.size() > static_cast<std::size_t>(msg::kMaxBlobs)) blobs.resize(static_cast<std::size_t>(msg::kMaxBlobs));
   return blobs;
 }
 

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <vector>
 
+#include "perception/few.hpp"
 #include "perception/object_sizes.hpp"
 #include "perception/regions.hpp"
 
 namespace constrictor::perception {
+
+using Blobs = Few<msg::Blob, msg::kMaxBlobs>;
 
 /// Objects and zones of `regions`, the largest first, at most msg::kMaxBlobs. `rgb` is the smoothed image: edges are
 /// located between pixels, where half of the colour is left.
@@ -17,8 +19,8 @@ namespace constrictor::perception {
 /// lower edge by projection onto the ground. If the lower edge is hidden, it follows from the width, or from the upper
 /// edge, of an object of the known size (`sizes`). If too little is visible, it is NaN. `measured`: what this image
 /// shows of the size of objects.
-std::vector<msg::Blob> find_blobs(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
-                                  const PerceptionConfig& config, std::uint8_t line_colour, const ObjectSizes& sizes,
-                                  MeasuredSizes& measured);
+[[nodiscard]] Blobs find_blobs(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
+                               const PerceptionConfig& config, std::uint8_t line_colour, const ObjectSizes& sizes,
+                               MeasuredSizes& measured);
 
 }  // namespace constrictor::perception

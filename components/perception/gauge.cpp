@@ -188,7 +188,7 @@ msg::Blob Gauge::box(int u_min, int u_max) const {
 }
 
 void Gauge::find_sides() {
-  std::vector<double> lefts, rights;
+  Few<double, 6> lefts, rights;  // of the rows around the horizon
   std::size_t lefts_hidden = 0, rights_hidden = 0;
   const double middle = 0.5 * (region_.standing_first + region_.standing_last + 1);
   const int horizon = static_cast<int>(std::floor(camera_.horizon_row(middle)));
@@ -237,7 +237,7 @@ bool Gauge::is_behind_object(double left, double right) const {
 
 double Gauge::height_m(double range_m, bool cut_top) const {
   if (region_.low) return region_.height_m;
-  std::vector<double> slopes;
+  Few<double, kPaths> slopes;
   if (cut_top) slopes.push_back(-descent(camera_, {0.5 * (region_.standing_first + region_.standing_last + 1), 0.0}));
   else slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
   return slopes.empty() ? kNan : camera_.height_m() + range_m * median(slopes);

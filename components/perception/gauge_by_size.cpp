@@ -20,7 +20,7 @@ bool Gauge::ends_in_zone(double range_m) const {
   constexpr double kFar_m = 1.5;  // nearer, the zone is several pixels high, and is told from the object
   constexpr double kNarrow = 0.88;
   if (range_m <= kFar_m) return false;
-  const std::vector<ObjectSize> sizes = sizes_.candidates();
+  const auto sizes = sizes_.candidates();
   const auto narrower = [&](const ObjectSize& size) { return range_m < kNarrow * range_by_width(size); };
   return !sizes.empty() && std::all_of(sizes.begin(), sizes.end(), narrower);
 }
@@ -36,7 +36,7 @@ double Gauge::range_by_height(double height_m, double slope) const {
 }
 
 double Gauge::upper_slope() const {
-  std::vector<double> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
+  Few<double, kPaths> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
   return slopes.empty() ? kUnknown : median(slopes);
 }
 
@@ -45,7 +45,7 @@ ObjectSize Gauge::likeliest_size(const msg::Blob& blob, double slope, bool on_zo
   constexpr double kPixels = 1.0;     // standard deviation of an edge
   constexpr double kHeight_m = 0.02;  // standard deviation of a known height
   constexpr double kOlder = 1.0;      // cost of a size that was not measured last
-  const std::vector<ObjectSize> sizes = sizes_.candidates();
+  const auto sizes = sizes_.candidates();
   if (sizes.size() < 2) return sizes.empty() ? ObjectSize{} : sizes.front();
   const double pixel_rad = kPixels / camera_.focal_pixels();
   const bool whole = std::isfinite(slope) && !blob.cut_left && !blob.cut_right && !blob.cut_top;

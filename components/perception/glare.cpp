@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "perception/ground_colour.hpp"
 #include "perception/sight.hpp"
@@ -36,9 +35,10 @@ int first_ground_row(const GroundCamera& camera, int u) {
 
 /// Standard deviation of the ground's darkest channel, from the differences of places that lie beside each other:
 /// shadows and glare have few borders.
-double noise_sd(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels) {
+double noise_sd(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels,
+                std::vector<double>& differences) {
   constexpr double kMedianOfNormal = 0.6745;  // median of the absolute value, for a standard deviation of 1
-  std::vector<double> differences;
+  differences.clear();
   const auto unlabelled = [&](int v, int u) { return labels.image.at<std::uint8_t>(v, u) == msg::kColourUnknown; };
   for (int u = kGridColumns / 2 + kGridColumns; u < rgb.cols; u += kGridColumns) {
     for (int v = first_ground_row(camera, u); v < rgb.rows; v += kGridRows) {
@@ -50,8 +50,11 @@ double noise_sd(const cv::Mat& rgb, const GroundCamera& camera, const Labels& la
   return differences.empty() ? 0.0 : median(differences) / (kMedianOfNormal * std::numbers::sqrt2);
 }
 
-UsualGround ground_under_glare(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels) {
-  std::vector<const std::uint8_t*> bright, ground;
+UsualGround ground_under_glare(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels,
+                               GlareBuffers& buffers) {
+  auto& [bright, ground, brightness, differences, tints] = buffers;
+  bright.clear();
+  ground.clear();
   for (int u = kGridColumns / 2; u < rgb.cols; u += kGridColumns) {
     for (int v = first_ground_row(camera, u); v < rgb.rows; v += kGridRows) {
       const std::uint8_t* pixel = rgb.ptr<std::uint8_t>(v) + 3 * u;
@@ -61,29 +64,28 @@ UsualGround ground_under_glare(const cv::Mat& rgb, const GroundCamera& camera, c
   }
   const auto least = static_cast<std::size_t>(kLeastGlareShare * static_cast<double>(ground.size())) + 1;
   if (bright.size() < least) return {};
-  std::vector<double> brightness, red, blue;
+  brightness.clear();
+  tints.clear();
   for (const std::uint8_t* pixel : ground) {
-    const Tint tint = Tint::of(pixel);
     brightness.push_back(darkest_channel(pixel));
-    red.push_back(tint.red);
-    blue.push_back(tint.blue);
+    tints.add(Tint::of(pixel));
   }
   const auto usual =
       brightness.begin() + static_cast<std::ptrdiff_t>(kLitShare * static_cast<double>(brightness.size()));
   std::nth_element(brightness.begin(), usual, brightness.end());
-  const double least_bright =
-      std::max({static_cast<double>(kBright), kBrighter * *usual, *usual + kNoise_sd * noise_sd(rgb, camera, labels)});
+  const double least_bright = std::max({static_cast<double>(kBright), kBrighter * *usual,
+                                        *usual + kNoise_sd * noise_sd(rgb, camera, labels, differences)});
   const auto in_glare = std::count_if(
       bright.begin(), bright.end(), [&](const std::uint8_t* pixel) { return darkest_channel(pixel) >= least_bright; });
   if (static_cast<std::size_t>(in_glare) < least) return {};
-  return {*usual, {median(red), median(blue)}};
+  return {*usual, tints.usual()};
 }
 
 }  // namespace
 
 bool recover_pale_colours(const cv::Mat& rgb, const ColourClassifier& classifier, const GroundCamera& camera,
-                          Labels& labels) {
-  const UsualGround usual = ground_under_glare(rgb, camera, labels);
+                          GlareBuffers& buffers, Labels& labels) {
+  const UsualGround usual = ground_under_glare(rgb, camera, labels, buffers);
   if (usual.brightness <= 0.0) return false;
   bool dazzled = false;
   for (int u = 0; u < rgb.cols; ++u) {

@@ -34,17 +34,16 @@ std::uint8_t most_frequent_colour(const Labels& labels) {
 }
 
 /// The tint of most pixels of a colour below the horizon.
-Tint usual_tint(const cv::Mat& rgb, const Labels& labels, const GroundCamera& camera, std::uint8_t colour) {
-  std::vector<double> red, blue;
+Tint usual_tint(const cv::Mat& rgb, const Labels& labels, const GroundCamera& camera, std::uint8_t colour,
+                TintSamples& samples) {
+  samples.clear();
   for (int v = 0; v < rgb.rows; v += kSampleApart) {
     for (int u = 0; u < rgb.cols; u += kSampleApart) {
       if (labels.image.at<std::uint8_t>(v, u) != colour || v < camera.horizon_row(u + 0.5) + 1.0) continue;
-      const Tint tint = Tint::of(rgb.ptr<std::uint8_t>(v) + 3 * u);
-      red.push_back(tint.red);
-      blue.push_back(tint.blue);
+      samples.add(Tint::of(rgb.ptr<std::uint8_t>(v) + 3 * u));
     }
   }
-  return red.empty() ? Tint{} : Tint{median(red), median(blue)};
+  return samples.usual();
 }
 
 /// `colour`: the most frequent colour of the image, of this usual tint.
@@ -99,6 +98,18 @@ Tint Tint::of(const std::uint8_t* rgb) {
   return {rgb[0] / sum, rgb[2] / sum};
 }
 
+void TintSamples::clear() {
+  red_.clear();
+  blue_.clear();
+}
+
+void TintSamples::add(const Tint& tint) {
+  red_.push_back(tint.red);
+  blue_.push_back(tint.blue);
+}
+
+Tint TintSamples::usual() { return red_.empty() ? Tint{} : Tint{median(red_), median(blue_)}; }
+
 bool GroundColour::is_like(const GroundColour& other) const {
   return colour == other.colour && (!coloured() || tint.distance(other.tint) < Tint::kTolerance);
 }
@@ -116,9 +127,10 @@ void GroundColour::learn(const GroundColour& seen) {
   }
 }
 
-GroundColour ground_in_view(const cv::Mat& rgb, const Labels& labels, const GroundCamera& camera) {
+GroundColour ground_in_view(const cv::Mat& rgb, const Labels& labels, const GroundCamera& camera,
+                            TintSamples& samples) {
   const std::uint8_t colour = most_frequent_colour(labels);
-  const Tint usual = colour == msg::kColourUnknown ? Tint{} : usual_tint(rgb, labels, camera, colour);
+  const Tint usual = colour == msg::kColourUnknown ? Tint{} : usual_tint(rgb, labels, camera, colour, samples);
   int plain = 0, coloured = 0, columns = 0;
   for (int u = kColumnsApart / 2; u < rgb.cols; u += kColumnsApart, ++columns) {
     const Ground ground = ground_in_column(rgb, labels, camera, colour, usual, u);

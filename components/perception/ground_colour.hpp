@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "perception/colour_classifier.hpp"
 #include "perception/ground_camera.hpp"
@@ -18,6 +19,18 @@ struct Tint {
   static constexpr double kTolerance = 0.045;
   [[nodiscard]] double distance(const Tint& other) const;
   [[nodiscard]] static Tint of(const std::uint8_t* rgb);
+};
+
+/// The tints of several pixels.
+class TintSamples {
+ public:
+  void clear();
+  void add(const Tint& tint);
+  /// Their median; that of no pixel is a default one. Reorders them.
+  [[nodiscard]] Tint usual();
+
+ private:
+  std::vector<double> red_, blue_;
 };
 
 /// What one image, or the images so far, show of the ground.
@@ -40,8 +53,9 @@ struct GroundColour {
 
 /// What an image shows of the ground; without images if it shows too little of it. Ground has a colour if most columns
 /// of the image show it from 1.5 m to 3.4 m away, which is beyond the zones that a robot drives over, and not above the
-/// horizon. `rgb`: the smoothed image, `labels`: its colours.
-[[nodiscard]] GroundColour ground_in_view(const cv::Mat& rgb, const Labels& labels, const GroundCamera& camera);
+/// horizon. `rgb`: the smoothed image, `labels`: its colours. The memory of `samples` is used again.
+[[nodiscard]] GroundColour ground_in_view(const cv::Mat& rgb, const Labels& labels, const GroundCamera& camera,
+                                          TintSamples& samples);
 
 /// Takes their label from the pixels of coloured ground. What remains of its colour are objects and zones of another
 /// saturation, and everything that reaches above the horizon, down to where its shade changes on the ground.

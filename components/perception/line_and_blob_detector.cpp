@@ -6,8 +6,6 @@
 
 #include "constrictor/image.hpp"
 #include "perception/blobs.hpp"
-#include "perception/glare.hpp"
-#include "perception/line_fit.hpp"
 #include "perception/line_tracer.hpp"
 #include "perception/low_objects.hpp"
 #include "perception/object_on_zone.hpp"
@@ -18,14 +16,13 @@
 namespace constrictor::perception {
 namespace {
 
-msg::LinePercept line_percept(const LineTrace& trace, std::uint8_t colour, double lookahead_m) {
+msg::LinePercept line_percept(const LineTrace& trace, const LineFit& fit, std::uint8_t colour, double lookahead_m) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   msg::LinePercept line{};
   line.colour = colour;
   line.end_distance_m = kNan;
   line.lookahead_m = lookahead_m;
   line.offset_m = line.heading_rad = line.curvature_1_m = line.near_m = line.far_m = kNan;
-  const LineFit fit = fit_line(trace, lookahead_m);
   if (!fit.valid) return line;
   line.visible = true;
   line.lookahead_m = fit.lookahead_m;
@@ -94,19 +91,18 @@ Percepts LineAndBlobDetector::detect(const cv::Mat& rgb, const GroundCamera& cam
                                 : seen_sizes;
   smoother_.smooth(rgb, smooth_);
   classifier_.classify(smooth_, labels_);
-  const bool dazzled = recover_pale_colours(smooth_, classifier_, camera, labels_);
+  const bool dazzled = recover_pale_colours(smooth_, classifier_, camera, glare_buffers_, labels_);
   Percepts percepts;
   percepts.ground = seen_ground;
-  percepts.ground.learn(ground_in_view(smooth_, labels_, camera));
+  percepts.ground.learn(ground_in_view(smooth_, labels_, camera, tint_samples_));
   if (percepts.ground.coloured()) remove_ground(smooth_, percepts.ground, camera, labels_);
   find_regions(labels_, camera, config_, line_colour, percepts.ground, region_buffers_, regions_);
   regions_.dazzled = dazzled ? labels_.image : cv::Mat();
   mark_low_objects(smooth_, camera, config_, regions_);
   split_objects_from_zones(smooth_, camera, config_, sizes, regions_);
   const LineTrace trace = trace_line(labels_, regions_, camera, config_, line_colour);
-  const std::vector<msg::Blob> blobs =
-      find_blobs(smooth_, regions_, camera, config_, line_colour, sizes, percepts.measured);
-  percepts.line = line_percept(trace, line_colour, config_.lookahead_m);
+  const Blobs blobs = find_blobs(smooth_, regions_, camera, config_, line_colour, sizes, percepts.measured);
+  percepts.line = line_percept(trace, line_fitter_.fit(trace, config_.lookahead_m), line_colour, config_.lookahead_m);
   percepts.objects.blob_count = static_cast<std::uint16_t>(blobs.size());
   std::copy(blobs.begin(), blobs.end(), percepts.objects.blobs);
   for (const Eigen::Vector2d& p : find_obstacles(smooth_, regions_, camera, config_)) {

@@ -6,8 +6,10 @@
 #include <string>
 
 #include "perception/colour_classifier.hpp"
+#include "perception/glare.hpp"
 #include "perception/ground_camera.hpp"
 #include "perception/ground_colour.hpp"
+#include "perception/line_fit.hpp"
 #include "perception/object_sizes.hpp"
 #include "perception/perception_config.hpp"
 #include "perception/regions.hpp"
@@ -50,7 +52,10 @@ class LineAndBlobDetector {
   Smoother smoother_;
   cv::Mat smooth_, picture_;
   Labels labels_;
+  GlareBuffers glare_buffers_;
+  TintSamples tint_samples_;
   RegionBuffers region_buffers_;
+  LineFitter line_fitter_;
   Regions regions_;
 };
 

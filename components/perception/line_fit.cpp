@@ -3,7 +3,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <vector>
+
+#include "perception/sight.hpp"
 
 namespace constrictor::perception {
 namespace {
@@ -30,7 +31,7 @@ std::size_t anchor_index(const LineTrace& trace, double lookahead_m, double& rea
 
 }  // namespace
 
-LineFit fit_line(const LineTrace& trace, double lookahead_m) {
+LineFit LineFitter::fit(const LineTrace& trace, double lookahead_m) {
   LineFit fit;
   const auto& points = trace.points;
   if (points.size() < 4) return fit;
@@ -56,7 +57,7 @@ LineFit fit_line(const LineTrace& trace, double lookahead_m) {
   Eigen::Vector3d c = Eigen::Vector3d::Zero();
   for (int turn = 0; turn < 2; ++turn) {
     const Eigen::Vector2d n(-t.y(), t.x());
-    std::vector<double> weight(last - first + 1, 1.0);
+    weight_.assign(last - first + 1, 1.0);
     for (int iteration = 0; iteration < kIterations; ++iteration) {
       Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
       Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -65,7 +66,7 @@ LineFit fit_line(const LineTrace& trace, double lookahead_m) {
         const Eigen::Vector2d d = points[i].p - origin;
         const double s = d.dot(t), y = d.dot(n);
         const Eigen::Vector3d row(1.0, s, s * s);
-        const double w = weight[i - first] / (points[i].sd_m * points[i].sd_m);
+        const double w = weight_[i - first] / (points[i].sd_m * points[i].sd_m);
         A += w * row * row.transpose();
         b += w * y * row;
       }
@@ -73,18 +74,17 @@ LineFit fit_line(const LineTrace& trace, double lookahead_m) {
       A(1, 1) += 1e-9;
       c = A.ldlt().solve(b);
       // Tukey's biweight of residuals in units of their expected error.
-      std::vector<double> residual(weight.size());
+      residual_.resize(weight_.size());
       for (std::size_t i = first; i <= last; ++i) {
         const Eigen::Vector2d d = points[i].p - origin;
         const double s = d.dot(t);
-        residual[i - first] = std::abs(d.dot(n) - (c[0] + c[1] * s + c[2] * s * s)) / points[i].sd_m;
+        residual_[i - first] = std::abs(d.dot(n) - (c[0] + c[1] * s + c[2] * s * s)) / points[i].sd_m;
       }
-      std::vector<double> sorted = residual;
-      std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-      const double scale = std::max(1.5, 1.48 * sorted[sorted.size() / 2]) * 4.7;
-      for (std::size_t i = 0; i < weight.size(); ++i) {
-        const double r = residual[i] / scale;
-        weight[i] = r < 1.0 ? (1.0 - r * r) * (1.0 - r * r) : 0.0;
+      sorted_ = residual_;
+      const double scale = std::max(1.5, 1.48 * median(sorted_)) * 4.7;
+      for (std::size_t i = 0; i < weight_.size(); ++i) {
+        const double r = residual_[i] / scale;
+        weight_[i] = r < 1.0 ? (1.0 - r * r) * (1.0 - r * r) : 0.0;
       }
     }
     if (turn == 0) {

@@ -1,6 +1,8 @@
 // Offset, heading and curvature of the traced line at a distance ahead.
 #pragma once
 
+#include <vector>
+
 #include "perception/line_tracer.hpp"
 
 namespace constrictor::perception {
@@ -16,6 +18,12 @@ struct LineFit {
 /// Robust parabola (iteratively reweighted least squares with Tukey's biweight) through the points around the
 /// lookahead, in a frame along the line there. So a line that crosses the view is fitted as well as one that leads
 /// ahead. For short pieces the curvature tends to zero (prior of 1.5 1/m).
-LineFit fit_line(const LineTrace& trace, double lookahead_m);
+class LineFitter {
+ public:
+  [[nodiscard]] LineFit fit(const LineTrace& trace, double lookahead_m);
+
+ private:
+  std::vector<double> weight_, residual_, sorted_;  // of the points; kept for their memory
+};
 
 }  // namespace constrictor::perception

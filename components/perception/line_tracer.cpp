@@ -10,6 +10,7 @@ namespace constrictor::perception {
 namespace {
 
 constexpr int kMaxSteps = 400;
+constexpr std::size_t kUsualSteps = 128;  // of most walks, so that the memory of their points is allocated once
 constexpr int kMaxSeeds = 6;
 constexpr double kMinLength_m = 0.06;
 
@@ -41,6 +42,7 @@ class Tracer {
 
   Walk walk(Eigen::Vector2d p, Eigen::Vector2d direction) {
     Walk w;
+    w.points.reserve(kUsualSteps);
     double gap_m = 0.0;
     for (int i = 0; i < kMaxSteps; ++i) {
       const double step_m = std::clamp(0.05 * view_.range(p), 0.012, 0.05);
@@ -145,6 +147,7 @@ class Tracer {
     LineTrace trace;
     std::size_t clear = ahead.points.size() + back.points.size();
     if (clear < 4) return {};
+    trace.points.reserve(clear);
     for (std::size_t i = back.points.size(); i-- > 1;) trace.points.push_back(back.points[i]);
     trace.points.insert(trace.points.end(), ahead.points.begin(), ahead.points.end());
     double length_m = 0.0;

@@ -42,10 +42,10 @@ Rise rise_at_side(const cv::Mat& rgb, const GroundCamera& camera, const Regions&
 /// For a region of which the image shows both sides: the nearest edge and the sides of a disc determine where its
 /// farthest edge lies. `height` becomes that of a round object whose farthest rim is the highest edge. The error of an
 /// edge is taken as one pixel.
-Rise rise_of_whole(const std::vector<Path>& paths, const GroundCamera& camera, const Sides& sides, Height& height) {
+Rise rise_of_whole(const Few<Path, kPaths>& paths, const GroundCamera& camera, const Sides& sides, Height& height) {
   if (2 * paths.size() <= kPaths) return Rise::kDoubtful;
   const Disc disc = Disc::of(sides, paths);
-  std::vector<double> heights;
+  Few<double, kPaths> heights;
   for (const Path& path : paths)
     heights.push_back(camera.height_m() - disc.far_m(path.aside_rad) * std::max(path.slope, 0.0));
   const double least_m = std::max(kLeastObjectHeight_m, kRisePixels * disc.centre_m / camera.focal_pixels());

@@ -49,7 +49,7 @@ std::optional<ZoneOutline> outline_of(const cv::Mat& rgb, const GroundCamera& ca
   if (zone.left_hidden || zone.right_hidden) return std::nullopt;
   if (zone.u_min == 0 || zone.u_max == camera.width() - 1 || zone.v_max == camera.height() - 1) return std::nullopt;
   const Sides sides = sides_of(rgb, camera, regions, index);
-  const std::vector<Path> paths = walk_paths(rgb, camera, regions, index, sides);
+  const auto paths = walk_paths(rgb, camera, regions, index, sides);
   if (sides.angle_rad() <= 0.0 || 2 * paths.size() <= kPaths) return std::nullopt;
   return ZoneOutline{Disc::of(sides, paths), sides.middle_rad()};
 }
@@ -111,7 +111,7 @@ void split_objects_from_zones(const cv::Mat& rgb, const GroundCamera& camera, co
   const std::size_t count = regions.regions.size();
   for (std::size_t i = 0; i < count && regions.regions.size() < kMaxRegions; ++i) {
     const Region zone = regions.regions[i];
-    const std::vector<ObjectSize> known = sizes.of[zone.colour].candidates();
+    const auto known = sizes.of[zone.colour].candidates();
     if (zone.area < 4 * config.min_area_pixels || zone.line || zone.standing()) continue;
     const auto may_be_low = [&](const ObjectSize& size) { return size.height_m <= camera.height_m() + kAboveCamera_m; };
     if (std::none_of(known.begin(), known.end(), may_be_low)) continue;

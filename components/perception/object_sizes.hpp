@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "constrictor/messages.hpp"
+#include "perception/few.hpp"
 
 namespace constrictor::perception {
 
@@ -61,14 +61,16 @@ struct SizesOfColour {
   /// The sizes that an object may have, the one that was measured last first: the mean, or else the different sizes, if
   /// there are several. A third as many images must have shown each of them as the one that most have shown: what a few
   /// images show of an object that the body hides in part is not another object. Empty if none is known.
-  [[nodiscard]] std::vector<ObjectSize> candidates() const {
+  [[nodiscard]] Few<ObjectSize, 3> candidates() const {
     std::int32_t most = 0;
     for (const ObjectSize& size : different) most = std::max(most, size.images);
-    std::vector<ObjectSize> sizes;
+    Few<ObjectSize, 3> sizes;
     for (const ObjectSize& size : different)
       if (size.known() && 3 * size.images >= most) sizes.push_back(size);
     if (sizes.size() > 1) return sizes;
-    return known() ? std::vector<ObjectSize>{mean} : std::vector<ObjectSize>{};
+    Few<ObjectSize, 3> usual;
+    if (known()) usual.push_back(mean);
+    return usual;
   }
   template <class Archive>
   void serialize(Archive& archive) {

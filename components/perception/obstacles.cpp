@@ -127,40 +127,58 @@ std::optional<Eigen::Vector2d> foot_in_column(const Walk& walk, const GroundCame
   return p;
 }
 
+/// The surface of an obstacle, by its feet in successive columns, seen from the camera.
+class Surface {
+ public:
+  Surface(const GroundCamera& camera, Obstacles& found) : camera_(camera), found_(found) {}
+
+  [[nodiscard]] bool continues_at(const Eigen::Vector2d& foot) const {
+    // The depth of a surface that continues changes little from column to column.
+    const double step_m = 2.0 * camera_.pixel_along_m(foot.norm()) + 0.1 * foot.norm();
+    return columns_ == 0 || std::abs(feet_.back().norm() - foot.norm()) <= step_m;
+  }
+  void end() { columns_ = points_ = 0; }
+  /// Adds a foot. The one before it gives a point, unless it is in an outer column: those show a mixture of the
+  /// obstacle and of what lies behind it.
+  void add(const Eigen::Vector2d& foot) {
+    feet_ = {feet_[1], feet_[2], foot};
+    if (++columns_ < kColumns || found_.full()) return;
+    std::array ranges_m{feet_[0].norm(), feet_[1].norm(), feet_[2].norm()};
+    const Eigen::Vector2d p = camera_.position_on_ground() + median(ranges_m) * feet_[1].normalized();
+    if (points_ > 0 && (p - last_).norm() < kSpacing_m) return;
+    found_.push_back(p);
+    last_ = p;
+    ++points_;
+  }
+
+ private:
+  const GroundCamera& camera_;
+  Obstacles& found_;
+  std::array<Eigen::Vector2d, kColumns> feet_{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                              Eigen::Vector2d::Zero()};  // the last ones
+  Eigen::Vector2d last_ = Eigen::Vector2d::Zero();                       // of the points
+  std::size_t columns_ = 0;
+  std::size_t points_ = 0;
+};
+
 }  // namespace
 
-std::vector<Eigen::Vector2d> find_obstacles(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
-                                            const PerceptionConfig& config) {
-  std::vector<Eigen::Vector2d> found, surface;  // the surface: feet in successive columns, seen from the camera
+Obstacles find_obstacles(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
+                         const PerceptionConfig& config) {
+  Obstacles found;
   if (config.obstacle_max_range_m <= 0.0) return found;
   const Walk walk(rgb, regions, camera, 255.0 * config.obstacle_min_contrast);
-  const auto take_surface = [&] {
-    const Eigen::Vector2d* last = nullptr;
-    // The outer columns show a mixture of the obstacle and of what lies behind it.
-    for (std::size_t i = 1; surface.size() >= kColumns && i + 1 < surface.size(); ++i) {
-      if (found.size() == static_cast<std::size_t>(msg::kMaxPerceptObstacles)) break;
-      std::vector<double> ranges_m{surface[i - 1].norm(), surface[i].norm(), surface[i + 1].norm()};
-      const Eigen::Vector2d p = camera.position_on_ground() + median(ranges_m) * surface[i].normalized();
-      if (last != nullptr && (p - *last).norm() < kSpacing_m) continue;
-      found.push_back(p);
-      last = &found.back();
-    }
-    surface.clear();
-  };
-  found.reserve(static_cast<std::size_t>(msg::kMaxPerceptObstacles));
+  Surface surface(camera, found);
   for (int u = 0; u < camera.width(); u += kColumnStep) {
     const auto foot = foot_in_column(walk, camera, config, u + 0.5);
     if (!foot) {
-      take_surface();
+      surface.end();
       continue;
     }
-    // The depth of a surface that continues changes little from column to column.
     const Eigen::Vector2d seen = *foot - camera.position_on_ground();
-    const double step_m = 2.0 * camera.pixel_along_m(seen.norm()) + 0.1 * seen.norm();
-    if (!surface.empty() && std::abs(surface.back().norm() - seen.norm()) > step_m) take_surface();
-    surface.push_back(seen);
+    if (!surface.continues_at(seen)) surface.end();
+    surface.add(seen);
   }
-  take_surface();
   return found;
 }
 

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <vector>
 
+#include "perception/few.hpp"
 #include "perception/ground_camera.hpp"
 #include "perception/perception_config.hpp"
 #include "perception/regions.hpp"
 
 namespace constrictor::perception {
+
+using Obstacles = Few<Eigen::Vector2d, msg::kMaxPerceptObstacles>;
 
 /// Points [m] of frame V at which obstacles stand on the ground, from left to right in the image; at most
 /// kMaxPerceptObstacles.
@@ -20,7 +22,7 @@ namespace constrictor::perception {
 /// `rgb`: the smoothed image.
 /// Limits: an obstacle that is lower than the camera, that has the shade of the ground, or of which the border of the
 /// image cuts the upper edge or the foot, is not found.
-[[nodiscard]] std::vector<Eigen::Vector2d> find_obstacles(const cv::Mat& rgb, const Regions& regions,
-                                                          const GroundCamera& camera, const PerceptionConfig& config);
+[[nodiscard]] Obstacles find_obstacles(const cv::Mat& rgb, const Regions& regions, const GroundCamera& camera,
+                                       const PerceptionConfig& config);
 
 }  // namespace constrictor::perception

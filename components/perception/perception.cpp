@@ -61,9 +61,9 @@ msg::Quaternion Perception::attitude_at(std::int64_t tick) const {
                  : msg::Quaternion{1.0, 0.0, 0.0, 0.0};
 }
 
-std::vector<double> Perception::angles_at(std::int64_t tick) const {
+std::span<const double> Perception::angles_at(std::int64_t tick) const {
   const Posture* nearest = nearest_in_time(state_.postures, tick);
-  return nearest ? nearest->angles_rad : std::vector<double>{};
+  return nearest ? std::span<const double>(nearest->angles_rad) : std::span<const double>{};
 }
 
 bool Perception::accepted(const msg::CameraImage& image, const msg::CameraInfo& info, const char* topic,
@@ -93,8 +93,14 @@ void Perception::remember_body(const Tick& tick) {
   }
   if (joints_ && joints_.fresh()) {
     const std::size_t count = std::min<std::size_t>(joints_->joint_count, robot_.joints.size());
-    state_.postures.push_back({joints_->header.tick, {joints_->position_rad, joints_->position_rad + count}});
-    if (state_.postures.size() > kAttitudes) state_.postures.pop_front();
+    Posture now;
+    if (state_.postures.size() == kAttitudes) {
+      now = std::move(state_.postures.front());  // for its memory
+      state_.postures.pop_front();
+    }
+    now.tick = joints_->header.tick;
+    now.angles_rad.assign(joints_->position_rad, joints_->position_rad + count);
+    state_.postures.push_back(std::move(now));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "component/component.hpp"
@@ -131,7 +132,7 @@ class Perception : public TunableComponent<PerceptionState, perception::Percepti
   [[nodiscard]] bool accepted(const msg::CameraImage& image, const msg::CameraInfo& info, const char* topic,
                               ImageRepeats& repeats);
   [[nodiscard]] msg::Quaternion attitude_at(std::int64_t tick) const;
-  [[nodiscard]] std::vector<double> angles_at(std::int64_t tick) const;
+  [[nodiscard]] std::span<const double> angles_at(std::int64_t tick) const;
   /// After an event of a task, the next image of each camera is drawn.
   void follow_events();
   /// Writes the percepts of an image, and its picture if it is its turn. `X_GV`: frame V of the camera's view.

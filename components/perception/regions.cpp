@@ -12,10 +12,7 @@ namespace {
 constexpr int kSpeckPixels = 4;  // smaller fragments are dropped before fragments are joined
 constexpr double kHorizonMarginPixels = 1.0;
 
-struct Fragment {
-  Region region;
-  int component = 0;
-};
+using Fragment = RegionBuffers::Fragment;
 
 /// Whether two fragments of one colour are so close together that noise or a thin object in front has split one region.
 bool adjoin(const Region& a, const Region& b) {
@@ -57,7 +54,8 @@ void add_colour(const Labels& labels, std::uint8_t colour, int min_area, RegionB
   cv::morphologyEx(mask, mask, cv::MORPH_CLOSE, kSquare, {-1, -1}, 1, cv::BORDER_CONSTANT | cv::BORDER_ISOLATED);
   const int count = cv::connectedComponentsWithStats(mask, components, buffers.stats, buffers.centroids, 8, CV_16U);
 
-  std::vector<Fragment> fragments;
+  std::vector<Fragment>& fragments = buffers.fragments;
+  fragments.clear();
   for (int i = 1; i < count; ++i) {
     const int* s = buffers.stats.ptr<int>(i);
     if (s[cv::CC_STAT_AREA] < kSpeckPixels) continue;
@@ -70,12 +68,14 @@ void add_colour(const Labels& labels, std::uint8_t colour, int min_area, RegionB
     region.v_max = region.v_min + s[cv::CC_STAT_HEIGHT] - 1;
     fragments.push_back({region, i});
   }
-  std::stable_sort(fragments.begin(), fragments.end(),
-                   [](const Fragment& a, const Fragment& b) { return a.region.area > b.region.area; });
+  std::sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
+    return a.region.area != b.region.area ? a.region.area > b.region.area : a.component < b.component;
+  });
   fragments.resize(std::min<std::size_t>(fragments.size(), 64));
 
   // Each fragment joins the first larger group that it adjoins.
-  std::vector<int> group(fragments.size(), -1);
+  std::vector<int>& group = buffers.group;
+  group.assign(fragments.size(), -1);
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     if (group[i] >= 0) continue;
     group[i] = static_cast<int>(i);
@@ -91,8 +91,10 @@ void add_colour(const Labels& labels, std::uint8_t colour, int min_area, RegionB
     }
   }
 
-  std::vector<std::uint8_t> id_of_component(static_cast<std::size_t>(count), 0);
-  std::vector<std::uint8_t> id_of_group(fragments.size(), 0);
+  auto& id_of_component = buffers.id_of_component;
+  auto& id_of_group = buffers.id_of_group;
+  id_of_component.assign(static_cast<std::size_t>(count), 0);
+  id_of_group.assign(fragments.size(), 0);
   for (std::size_t i = 0; i < fragments.size(); ++i) {
     const auto g = static_cast<std::size_t>(group[i]);
     if (g == i && fragments[i].region.area >= min_area && out.regions.size() < kMaxRegions) {
@@ -170,9 +172,9 @@ bool foot_is_unseen(const Region& region, const GroundCamera& camera, const Grou
 
 /// Whether a flat region is so long and thin on the ground that it is a piece of line.
 bool is_elongated(const cv::Mat& ids, std::uint8_t id, const GroundCamera& camera, const Region& region,
-                  double line_width_m) {
+                  double line_width_m, std::vector<Eigen::Vector2d>& points) {
   double area_m2 = 0.0, nearest_m = 1e9;
-  std::vector<Eigen::Vector2d> points;
+  points.clear();
   for (int v = region.v_min; v <= region.v_max; ++v) {
     int first = -1, last = -1, count = 0;
     for (int u = region.u_min; u <= region.u_max; ++u) {
@@ -233,7 +235,7 @@ void find_regions(const Labels& labels, const GroundCamera& camera, const Percep
     find_standing_columns(out.ids, id, camera, region);
     region.on_zone = foot_is_unseen(region, camera, ground);
     region.line = region.colour == line_colour && !region.standing() &&
-                  is_elongated(out.ids, id, camera, region, config.line_width_m);
+                  is_elongated(out.ids, id, camera, region, config.line_width_m, buffers.points);
   }
 }
 

@@ -61,9 +61,17 @@ struct Regions {
   }
 };
 
-/// Images that find_regions() uses again, so that it need not allocate them for each image.
+/// Images and lists that find_regions() uses again, so that it need not allocate them for each image.
 struct RegionBuffers {
+  struct Fragment {
+    Region region;
+    int component = 0;
+  };
   cv::Mat mask, components, stats, centroids;
+  std::vector<Fragment> fragments;
+  std::vector<int> group;  ///< of each fragment
+  std::vector<std::uint8_t> id_of_component, id_of_group;
+  std::vector<Eigen::Vector2d> points;  ///< of a region's rows on the ground
 };
 
 /// Finds the regions of labels: joins fragments of one colour, drops specks and the fringes of mixed colour

@@ -23,9 +23,11 @@ std::optional<VerticalPlane> vertical_plane(const GroundCamera& camera, double a
   return VerticalPlane{*far, (*low - *far).normalized()};
 }
 
-double path_share(int i, int count, double width) { return 0.5 + width * (static_cast<double>(i) / (count - 1) - 0.5); }
+double path_share(std::size_t i, std::size_t count, double width) {
+  return 0.5 + width * (static_cast<double>(i) / static_cast<double>(count - 1) - 0.5);
+}
 
-double median(std::vector<double>& values) {
+double median(std::span<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <vector>
+#include <span>
 
 #include "perception/ground_camera.hpp"
 
@@ -32,9 +32,9 @@ struct VerticalPlane {
 
 /// The azimuth at a share of the way from the right side (0) to the left side (1) of something in view: path `i` of
 /// `count`, spread over the middle `width` of it.
-[[nodiscard]] double path_share(int i, int count, double width);
+[[nodiscard]] double path_share(std::size_t i, std::size_t count, double width);
 
 /// The median; reorders `values`, which must not be empty.
-[[nodiscard]] double median(std::vector<double>& values);
+[[nodiscard]] double median(std::span<double> values);
 
 }  // namespace constrictor::perception

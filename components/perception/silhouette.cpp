@@ -58,10 +58,10 @@ std::optional<Path> walk(const cv::Mat& rgb, const GroundCamera& camera, const R
   return Path{0.0, (*foot - camera.position_on_ground()).norm(), descent(camera, high.pixel)};
 }
 
-std::vector<Path> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::size_t index,
+Few<Path, kPaths> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::size_t index,
                              const Sides& sides) {
-  std::vector<Path> paths;
-  for (int i = 0; i < kPaths; ++i) {
+  Few<Path, kPaths> paths;
+  for (std::size_t i = 0; i < kPaths; ++i) {
     const double aside = (path_share(i, kPaths, kMiddle) - 0.5) * sides.angle_rad();
     auto path = walk(rgb, camera, regions, index, 0.5 * (sides.left_rad + sides.right_rad) + aside);
     if (!path) continue;
@@ -73,9 +73,9 @@ std::vector<Path> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, con
 
 double lower_edge_range_m(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions, std::uint8_t id,
                           double right_rad, double left_rad, double max_gap, bool& cut) {
-  std::vector<double> ranges;
-  int lost = 0, cuts = 0;
-  for (int i = 0; i < kPaths; ++i) {
+  Few<double, kPaths> ranges;
+  std::size_t lost = 0, cuts = 0;
+  for (std::size_t i = 0; i < kPaths; ++i) {
     const auto plane = vertical_plane(camera, right_rad + path_share(i, kPaths, kInnerShare) * (left_rad - right_rad));
     if (!plane) continue;
     const Edge edge = find_edge(rgb, regions, camera, id, plane->first_in_image(), plane->down, max_gap);
@@ -87,14 +87,14 @@ double lower_edge_range_m(const cv::Mat& rgb, const GroundCamera& camera, const 
     }
   }
   cut = 2 * cuts > kPaths;
-  if (ranges.empty() || lost > static_cast<int>(ranges.size())) return std::numeric_limits<double>::quiet_NaN();
+  if (ranges.empty() || lost > ranges.size()) return std::numeric_limits<double>::quiet_NaN();
   return median(ranges);
 }
 
-std::vector<double> upper_edge_slopes(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
+Few<double, kPaths> upper_edge_slopes(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
                                       std::uint8_t id, double right_rad, double left_rad) {
-  std::vector<double> slopes;
-  for (int i = 0; i < kPaths; ++i) {
+  Few<double, kPaths> slopes;
+  for (std::size_t i = 0; i < kPaths; ++i) {
     const auto plane = vertical_plane(camera, right_rad + path_share(i, kPaths, kInnerShare) * (left_rad - right_rad));
     if (!plane) continue;
     const Edge edge = find_edge(rgb, regions, camera, id, plane->horizon, -plane->down, kMaxGapPixels);
@@ -109,7 +109,7 @@ Disc Disc::between_tangents(double range_m, double angle_rad) {
   return {range_m + radius_m, radius_m};
 }
 
-Disc Disc::of(const Sides& sides, const std::vector<Path>& paths) {
+Disc Disc::of(const Sides& sides, const Few<Path, kPaths>& paths) {
   const auto nearer = [](const Path& a, const Path& b) { return a.near_m < b.near_m; };
   return between_tangents(std::min_element(paths.begin(), paths.end(), nearer)->near_m, sides.angle_rad());
 }

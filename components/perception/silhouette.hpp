@@ -4,15 +4,15 @@
 
 #include <opencv2/core.hpp>
 #include <optional>
-#include <vector>
 
+#include "perception/few.hpp"
 #include "perception/ground_camera.hpp"
 #include "perception/regions.hpp"
 
 namespace constrictor::perception {
 
 /// Number of lines of sight along which an edge is searched.
-inline constexpr int kPaths = 9;
+inline constexpr std::size_t kPaths = 9;
 /// Share of an object's width over which these lines are spread if its lower or upper edge gives the range.
 inline constexpr double kInnerShare = 0.5;
 /// [pixel] widest hole in the standing part of a region that a walk passes over.
@@ -42,7 +42,7 @@ struct Path {
                                        std::size_t index, double azimuth_rad);
 
 /// Up to kPaths paths, spread over the middle of the region.
-[[nodiscard]] std::vector<Path> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
+[[nodiscard]] Few<Path, kPaths> walk_paths(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,
                                            std::size_t index, const Sides& sides);
 
 /// [m] horizontal distance of the lower edge of a region from the camera, in the middle between two azimuths; NaN if it
@@ -52,7 +52,7 @@ struct Path {
 
 /// Slopes of the lines of sight to the edge of a region above the horizon, positive upwards, in the middle between two
 /// azimuths; empty if the edge is cut or hidden.
-[[nodiscard]] std::vector<double> upper_edge_slopes(const cv::Mat& rgb, const GroundCamera& camera,
+[[nodiscard]] Few<double, kPaths> upper_edge_slopes(const cv::Mat& rgb, const GroundCamera& camera,
                                                     const Regions& regions, std::uint8_t id, double right_rad,
                                                     double left_rad);
 
@@ -64,7 +64,7 @@ struct Disc {
   /// The disc whose nearest point is at `range_m`, and which fills an angle between its tangents.
   static Disc between_tangents(double range_m, double angle_rad);
   /// The disc to which the sides and the nearest edge of a region belong; `paths` must not be empty.
-  static Disc of(const Sides& sides, const std::vector<Path>& paths);
+  static Disc of(const Sides& sides, const Few<Path, kPaths>& paths);
   /// [m] distance of its farthest point at an angle beside its centre.
   [[nodiscard]] double far_m(double aside_rad) const;
 };
