@@ -87,7 +87,7 @@ void ChainDynamics::move_modules() {
   }
 }
 
-void ChainDynamics::solve_groups(std::span<const SolverContact> contacts) {
+void ChainDynamics::solve(std::span<const SolverContact> contacts) {
   // All modules are one body here, with the number 0. The smallest number of a group stands for it.
   groups_.resize(bodies_.size());
   std::iota(groups_.begin(), groups_.end(), std::size_t{0});
@@ -111,28 +111,41 @@ void ChainDynamics::solve_groups(std::span<const SolverContact> contacts) {
 }
 
 void ChainDynamics::step(std::span<const ServoRow> rows, std::span<const SolverContact> contacts) {
+  prepare(rows, contacts);
+  solve(contacts);
+  finish(contacts);
+}
+
+void ChainDynamics::prepare(std::span<const ServoRow> rows, std::span<const SolverContact> contacts) {
   prepare_chain();
   prepare_joints(rows);
   for (std::size_t body = module_count(); body < bodies_.size(); ++body) prepare_object(body);
   prepare_contacts(contacts);
-  solve_groups(contacts);
+}
+
+void ChainDynamics::finish(std::span<const SolverContact> contacts) {
+  const Vector6d wanted = momentum_after(contacts);
+  integrate();
+  restore_momentum(wanted, contacts);
+  std::fill(external_.begin(), external_.end(), External{});
+}
+
+Vector6d ChainDynamics::momentum_after(std::span<const SolverContact> contacts) {
   forces_n_.resize(contacts.size());
-  Vector6d momentum_after = momentum().first;
+  Vector6d after = momentum().first;
   for (std::size_t k = 0; k < module_count(); ++k) {
     const Vector3d force_n = external_[k].force_n + inertial_[k].mass_kg * gravity_m_s2_;
-    momentum_after += settings_.step_s *
-                      (at_point(bodies_[k].position_m, force_n) + spatial(external_[k].torque_nm, Vector3d::Zero()));
+    after += settings_.step_s *
+             (at_point(bodies_[k].position_m, force_n) + spatial(external_[k].torque_nm, Vector3d::Zero()));
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ChainSystem::Contact& contact = system_.contacts()[i];
     forces_n_[i] = contact.law.frame() * contact.force_n;
     const Vector6d impulse = settings_.step_s * at_point(contacts[i].touch.position_m, forces_n_[i]);
-    if (contact.first < module_count()) momentum_after += impulse;
-    if (contact.second < module_count()) momentum_after -= impulse;  // kFixed is not a module
+    if (contact.first < module_count()) after += impulse;
+    if (contact.second < module_count()) after -= impulse;  // kFixed is not a module
   }
-  integrate();
-  restore_momentum(momentum_after, contacts);
-  std::fill(external_.begin(), external_.end(), External{});
+  return after;
 }
 
 std::pair<Vector6d, Matrix6d> ChainDynamics::momentum() const {

@@ -16,7 +16,15 @@ class ChainDynamics : public Dynamics {
   ChainDynamics(const Mechanism& mechanism, const SolverSettings& settings);
 
   void move(std::size_t body, const Eigen::Vector3d& by_m) override;
+  /// prepare(), solve() and finish().
   void step(std::span<const ServoRow> rows, std::span<const SolverContact> contacts) override;
+  /// The first part of a step: sets its equations up.
+  void prepare(std::span<const ServoRow> rows, std::span<const SolverContact> contacts);
+  /// The second part: groups the bodies that touch each other, directly or over others, and solves for the velocities
+  /// of each group at the end of the step.
+  void solve(std::span<const SolverContact> contacts);
+  /// The last part: moves the bodies and reports torques and forces.
+  void finish(std::span<const SolverContact> contacts);
   [[nodiscard]] std::vector<double> save() const override;
   void load(std::span<const double> memory) override;
 
@@ -37,8 +45,8 @@ class ChainDynamics : public Dynamics {
   void prepare_object(std::size_t body);
   void prepare_contacts(std::span<const SolverContact> contacts);
   [[nodiscard]] Eigen::Vector3d drift_m_s(const SolverContact& contact, std::size_t module) const;
-  /// Groups the bodies that touch each other, directly or over others, and solves for each group.
-  void solve_groups(std::span<const SolverContact> contacts);
+  /// The momentum of the chain after the step, as the forces of the step change it. Reports the contacts' forces.
+  [[nodiscard]] Vector6d momentum_after(std::span<const SolverContact> contacts);
   void integrate();
   /// How many numbers save() returns.
   [[nodiscard]] std::size_t memory_size() const;

@@ -6,33 +6,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "robot/kinematics.hpp"
+#include "sim/world/ground_torques.hpp"
+#include "sim/world/mechanism.hpp"
 
 namespace constrictor {
 namespace {
 
 using Eigen::Vector3d;
-
-Eigen::Isometry3d upright(const Eigen::Vector2d& position_m, double height_m, double yaw_rad) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix();
-  pose.translation() = Vector3d(position_m.x(), position_m.y(), height_m);
-  return pose;
-}
-
-OdeGeom make_geom(BodyShape shape, const Vector3d& size_m) {
-  ensure_ode();
-  return OdeGeom(shape == BodyShape::kCylinder ? dCreateCylinder(nullptr, size_m.x(), size_m.z())
-                                               : dCreateBox(nullptr, size_m.x(), size_m.y(), size_m.z()));
-}
-
-double bound_of(BodyShape shape, const Vector3d& size_m) {
-  return shape == BodyShape::kCylinder ? std::hypot(size_m.x(), 0.5 * size_m.z()) : 0.5 * size_m.norm();
-}
-
-RigidBody body_of(const dMass& mass, const Eigen::Isometry3d& X_WB) {
-  return {mass.mass, {mass.I[0], mass.I[5], mass.I[10]}, X_WB};
-}
 
 /// The robot as it is in this scene; the components know only the robot file.
 RobotModel real_robot(RobotModel robot, const Scenario& scenario) {
@@ -46,62 +26,13 @@ World::World(const RobotModel& robot, const Scenario& scenario, const SolverSett
     : robot_(real_robot(robot, scenario)),
       scenario_(scenario),
       settings_(settings),
-      dynamics_(make_dynamics(mechanism(), settings)),
+      dynamics_(make_dynamics(mechanism_of(robot_, scenario_), settings)),
+      contact_finder_(robot_, scenario_, settings),
       rows_(robot.joints.size()),
-      capsules_(robot.module_count) {
+      pushes_n_(scenario.objects.size(), Vector3d::Zero()) {
   for (const JointModel& joint : robot_.joints) {
     drives_.emplace_back(joint);
     drives_.back().set({0.0, 0.0, joint.max_torque_nm});
-  }
-  build_objects();
-  build_obstacles();
-}
-
-Mechanism World::mechanism() const {
-  Mechanism mechanism;
-  mechanism.joints = robot_.joints;
-  mechanism.half_length_m = 0.5 * robot_.module_length_m;
-  mechanism.radius_m = robot_.module_radius_m;
-  mechanism.gravity_m_s2 = scenario_.gravity_m_s2;
-  dMass mass;
-  dMassSetCapsuleTotal(&mass, robot_.module_mass_kg, 1, robot_.module_radius_m, robot_.module_length_m);
-  const Eigen::Isometry3d X_WHead =
-      upright(scenario_.start_m, scenario_.start_height_m + robot_.module_radius_m, scenario_.start_yaw_rad);
-  for (const Eigen::Isometry3d& pose : module_poses(robot_, {}, X_WHead))
-    mechanism.modules.push_back(body_of(mass, pose));
-  for (const ScenarioObject& object : scenario_.objects) {
-    const Vector3d& size = object.size_m;
-    if (object.shape == BodyShape::kCylinder) {
-      dMassSetCylinderTotal(&mass, object.mass_kg, 3, size.x(), size.z());
-    } else {
-      dMassSetBoxTotal(&mass, object.mass_kg, size.x(), size.y(), size.z());
-    }
-    mechanism.objects.push_back(body_of(mass, upright(object.position_m, 0.5 * size.z(), object.yaw_rad)));
-  }
-  return mechanism;
-}
-
-void World::build_objects() {
-  for (const ScenarioObject& object : scenario_.objects) {
-    object_geoms_.push_back(make_geom(object.shape, object.size_m));
-    object_bound_m_.push_back(bound_of(object.shape, object.size_m));
-  }
-  pushes_n_.assign(object_count(), Vector3d::Zero());
-}
-
-void World::build_obstacles() {
-  for (const ScenarioObstacle& obstacle : scenario_.obstacles) {
-    Obstacle built;
-    built.solid = {obstacle.shape, obstacle.size_m,
-                   upright(obstacle.position_m, 0.5 * obstacle.size_m.z(), obstacle.yaw_rad)};
-    built.geom = make_geom(obstacle.shape, obstacle.size_m);
-    built.bound_m = bound_of(obstacle.shape, obstacle.size_m);
-    const Vector3d& p = built.solid.X_WS.translation();
-    dMatrix3 R;
-    dRFromAxisAndAngle(R, 0.0, 0.0, 1.0, obstacle.yaw_rad);
-    dGeomSetPosition(built.geom.get(), p.x(), p.y(), p.z());
-    dGeomSetRotation(built.geom.get(), R);
-    obstacles_.push_back(std::move(built));
   }
 }
 
@@ -148,54 +79,13 @@ void World::advance(double duration_s, const std::function<void()>& after_step) 
   extend_hash();
 }
 
-// A flat underside of half-width w resists rolling with a torque of at most weight times w. The torque grows linearly
-// over a small angle, because a step would excite the solver. A module that is tipped further than kTipped_rad rests on
-// its round side and feels no such torque.
-void World::stand_on_bellies() {
-  constexpr double kSoft_rad = 0.05;
-  constexpr double kTipped_rad = 0.8;
-  constexpr double kDamping_s = 0.01;
-  constexpr double kNear_m = 0.01;
-  const double most_nm = robot_.module_mass_kg * -scenario_.gravity_m_s2.z() * robot_.module_belly_half_width_m;
-  if (most_nm <= 0.0) return;
-  for (std::size_t i = 0; i < module_count(); ++i) {
-    const BodyMotion& body = dynamics_->body(i);
-    const Vector3d axis = body.R_WB.col(0);
-    const double roll_rad = std::atan2(body.R_WB(2, 1), body.R_WB(2, 2));
-    if (std::abs(roll_rad) > kTipped_rad || body.position_m.z() > robot_.module_radius_m + kNear_m) continue;
-    const double rate_rad_s = body.angular_velocity_rad_s.dot(axis);
-    const double share = std::clamp((roll_rad + kDamping_s * rate_rad_s) / kSoft_rad, -1.0, 1.0);
-    dynamics_->add_torque(i, axis * (-most_nm * share));
-  }
-}
-
-// Without this torque, a cylinder that was knocked over would roll on for ever. The torque of an object that rolls
-// slowly is proportional to its rate. One step removes at most half of the rate, so that the object cannot oscillate.
-void World::resist_rolling() {
-  constexpr double kSoft_rad_s = 0.05;
-  constexpr double kMostOfRate = 0.5;
-  for (std::size_t i = 0; i < object_count(); ++i) {
-    const ScenarioObject& object = scenario_.objects[i];
-    const Vector3d& rate = dynamics_->body(object_body(i)).angular_velocity_rad_s;
-    const double rolling_rad_s = std::hypot(rate.x(), rate.y());
-    if (rolling_rad_s < 1e-9) continue;
-    const double lever_m = object.shape == BodyShape::kCylinder ? object.size_m.x() : 0.5 * object.size_m.minCoeff();
-    const double weight_n = object.mass_kg * -scenario_.gravity_m_s2.z();
-    const double most_nm = kRollingResistance * weight_n * lever_m * std::min(1.0, rolling_rad_s / kSoft_rad_s);
-    const double inertia_kg_m2 = 0.4 * object.mass_kg * lever_m * lever_m;  // at least
-    const double torque_nm = std::min(most_nm, kMostOfRate * inertia_kg_m2 * rolling_rad_s / settings_.step_s);
-    dynamics_->add_torque(object_body(i),
-                          {-torque_nm * rate.x() / rolling_rad_s, -torque_nm * rate.y() / rolling_rad_s, 0.0});
-  }
-}
-
 void World::step() {
   for (std::size_t i = 0; i < drives_.size(); ++i) rows_[i] = drives_[i].drive();
   for (std::size_t i = 0; i < object_count(); ++i) dynamics_->add_force(object_body(i), pushes_n_[i]);
-  stand_on_bellies();
-  resist_rolling();
+  stand_on_bellies(robot_, scenario_, *dynamics_);
+  resist_rolling(scenario_, module_count(), settings_.step_s, *dynamics_);
   contacts_.begin_step();
-  collide();
+  contact_finder_.find(*dynamics_, contacts_);
   dynamics_->step(rows_, contacts_.contacts());
   contacts_.collect(*dynamics_);
   for (std::size_t i = 0; i < drives_.size(); ++i)

@@ -14,10 +14,10 @@
 
 #include "robot/robot_model.hpp"
 #include "sim/scenario_loader/scenario.hpp"
+#include "sim/world/contact_finder.hpp"
 #include "sim/world/contact_set.hpp"
 #include "sim/world/dynamics.hpp"
 #include "sim/world/joint_drive.hpp"
-#include "sim/world/ode_handles.hpp"
 #include "sim/world/solver_settings.hpp"
 #include "sim/world/state_hash.hpp"
 
@@ -31,10 +31,6 @@ struct ImuTruth {
   Eigen::Vector3d proper_acceleration_m_s2{0.0, 0.0, 0.0};
   Eigen::Vector3d up_W = Eigen::Vector3d::UnitZ();  ///< against gravity; not the z axis of W on a slope
 };
-
-/// Rolling resistance of an object that lies on the ground: its force as a share of its weight. An assumption, between
-/// a hard wheel on a hard floor (0.01) and a soft one (0.1).
-inline constexpr double kRollingResistance = 0.03;
 
 class World {
  public:
@@ -90,33 +86,15 @@ class World {
   /// cereal::Exception if they end too early.
   void load(const std::string& bytes);
 
+  /// The engine; for measurements.
+  [[nodiscard]] const Dynamics& dynamics() const { return *dynamics_; }
+  /// The robot as it is in this scene, whose mass may differ from that of the robot file.
   [[nodiscard]] const RobotModel& robot() const { return robot_; }
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
 
  private:
-  struct Obstacle {
-    ConvexSolid solid;
-    OdeGeom geom;
-    double bound_m = 0.0;  ///< [m] radius of a sphere about the centre that contains the obstacle
-  };
-
-  [[nodiscard]] Mechanism mechanism() const;
-  void build_objects();
-  void build_obstacles();
   [[nodiscard]] std::size_t object_body(std::size_t object) const { return module_count() + object; }
-  /// Radius of a sphere about the centre of a module that contains it.
-  [[nodiscard]] double module_bound_m() const { return 0.5 * robot_.module_length_m + robot_.module_radius_m; }
-  void collide();
-  void touch_ground(std::size_t module);
-  void touch_itself(std::size_t module);
-  void collide_objects();
-  void place_geom(std::size_t object);
-  void collide_geoms(dGeomID other, std::size_t object, std::size_t other_body);
-  [[nodiscard]] Capsule capsule_of(std::size_t module) const;
-  [[nodiscard]] ConvexSolid solid_of(std::size_t object) const;
   void step();
-  void stand_on_bellies();
-  void resist_rolling();
   void extend_hash();
   template <class Archive>
   void serialize_rest(Archive& archive);
@@ -125,15 +103,11 @@ class World {
   Scenario scenario_;
   SolverSettings settings_;
   std::unique_ptr<Dynamics> dynamics_;
+  ContactFinder contact_finder_;
   ContactSet contacts_;
   std::vector<JointDrive> drives_;
   std::vector<ServoRow> rows_;
-  std::vector<OdeGeom> object_geoms_;  ///< only for contacts of objects with objects and obstacles
-  std::vector<double> object_bound_m_;
-  std::vector<Obstacle> obstacles_;
   std::vector<Eigen::Vector3d> pushes_n_;  ///< on each object during the present advance()
-  std::vector<Capsule> capsules_;          ///< the modules in the present step
-  TouchPoints touches_;
   std::int64_t steps_done_ = 0;
   Eigen::Vector3d acceleration_m_s2_{0.0, 0.0, 0.0};  ///< of the head in W, mean over the last advance()
   std::vector<double> hash_values_;

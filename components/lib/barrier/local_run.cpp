@@ -63,10 +63,10 @@ std::int64_t LocalRun::advance(std::int64_t ticks) {
 }
 
 void LocalRun::restart_plant() {
-  const Checkpoint checkpoint = conductor_->save();
+  const Checkpoint saved = checkpoint();
   const std::uint32_t incarnation = members_[0]->incarnation() + 1;
   members_[0].reset();
-  conductor_ = std::make_unique<Conductor>(options_, static_cast<ConductorSink&>(*this), checkpoint);
+  conductor_ = std::make_unique<Conductor>(options_, static_cast<ConductorSink&>(*this), saved);
   members_[0] = make(0, incarnation);
   for (std::size_t topic = 0; topic < topics::kCount; ++topic) {
     if (!members_[0]->reads().contains(topic)) continue;

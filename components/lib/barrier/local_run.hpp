@@ -48,6 +48,8 @@ class LocalRun : private MemberSink, private ConductorSink {
   /// Destroys the member, as a crash would, and resumes a new incarnation from the last checkpoint. The plant dies
   /// together with the conductor; both continue from the conductor's checkpoint.
   void restart(const std::string& name);
+  /// The conductor's checkpoint, which a process of the plant would store before the next tick.
+  [[nodiscard]] Checkpoint checkpoint() const { return conductor_->save(); }
   /// Makes the next tick the final one.
   void end_run() { conductor_->end_run(); }
   /// Begins a new epoch with this seed.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world/ground_torques.hpp"
 #include "unit/world/world_fixture.hpp"
 
 namespace constrictor {

@@ -38,8 +38,8 @@ struct OpenLoopGait {
     return angles;
   }
 
-  /// Drives the world for one control period. `after_step` is called after each step of the solver.
-  void drive(World& world, double time_s, double period_s, const std::function<void()>& after_step = {}) const {
+  /// Commands the world for the control period that begins at `time_s`.
+  void command(World& world, double time_s, double period_s) const {
     const std::vector<double> now = angles(world.robot(), time_s);
     const std::vector<double> next = angles(world.robot(), time_s + period_s);
     std::vector<double> rates(now.size());
@@ -49,6 +49,11 @@ struct OpenLoopGait {
       torques[i] = world.robot().joints[i].max_torque_nm;
     }
     world.set_servo(next, rates, torques);
+  }
+
+  /// Drives the world for one control period. `after_step` is called after each step of the solver.
+  void drive(World& world, double time_s, double period_s, const std::function<void()>& after_step = {}) const {
+    command(world, time_s, period_s);
     world.advance(period_s, after_step);
   }
 };
