@@ -115,7 +115,7 @@ Vector3d MujocoEngine::module_position_m(std::size_t module) const {
 
 Vector3d MujocoEngine::object_position_m() const { return Eigen::Map<const Vector3d>(data_->xpos + 3 * object_body_); }
 
-// The same torque as World::stand_on_bellies.
+// The same torque as stand_on_bellies of sim/world.
 void MujocoEngine::stand_on_bellies() {
   const double most_nm = robot_.module_mass_kg * 9.81 * robot_.module_belly_half_width_m;
   for (const int body : body_) {
