@@ -3,9 +3,9 @@
 # Usage: scripts/bench.sh [--output DIR] [--no-peers] [--no-mission]
 #   --output DIR   folder of the results (default: build/bench)
 #   --no-peers     without the comparisons with MuJoCo, which takes some minutes, and with ddsperf
-#   --no-mission   without a run of the case study
+#   --no-mission   without the runs of the case study: CPU time by process and function, launch
 # Example: scripts/bench.sh --no-peers
-# Run it on a quiet machine. The exit status is 1 if something is above its budget.
+# Run it on a quiet machine. The exit status is 1 if something is above its limit.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -26,21 +26,31 @@ while [ $# -gt 0 ]; do
 done
 
 groups=(core tests)
-targets=(bench_world bench_physics bench_camera bench_perception bench_growth bench_table)
-if [ $peers = 1 ]; then groups+=(bench); targets+=(bench_engines); fi
+targets=(bench_world bench_tick bench_physics bench_camera bench_perception bench_growth bench_members bench_table)
+if [ $peers = 1 ]; then groups+=(bench); targets+=(bench_engines bench_renderers); fi
 if [ $mission = 1 ]; then targets+=(programs); fi
 ./scripts/setup.sh "${groups[@]}"
 ./scripts/build.sh --tests "${targets[@]}"
 mkdir -p "$output"
 rm -rf "$output"/*.json "$output/case_study"
 
-for part in world physics camera perception growth; do
+# The other options of the program are those of Google Benchmark.
+run_part() {
+  local part=$1
+  shift
   echo "bench: $part"
-  "build/release/bin/bench_$part" --benchmark_out="$output/$part.json" --benchmark_out_format=json >"$output/$part.txt"
-done
+  "build/release/bin/bench_$part" "$@" --benchmark_out="$output/$part.json" --benchmark_out_format=json \
+    >"$output/$part.txt"
+}
+for part in world physics camera perception growth; do run_part "$part"; done
+# Parts and wholes take turns, so that what disturbs the machine disturbs both.
+run_part tick --benchmark_repetitions=3 --benchmark_enable_random_interleaving=true
+echo "bench: members in processes of their own"
+/usr/bin/python3 tests/bench/members/measure.py >"$output/members.json"
 if [ $peers = 1 ]; then
   echo "bench: MuJoCo"
   build/release/bin/bench_engines >"$output/engines.json"
+  run_part renderers
   if command -v ddsperf >/dev/null; then
     echo "bench: ddsperf"
     /usr/bin/python3 tests/bench/peers/ddsperf_ping.py >"$output/ddsperf.json"
@@ -49,6 +59,10 @@ if [ $peers = 1 ]; then
   fi
 fi
 if [ $mission = 1 ]; then
+  echo "bench: the launch of the case study"
+  /usr/bin/python3 tests/bench/launch/measure.py >"$output/launch.json"
+  echo "bench: the case study by groups of functions"
+  /usr/bin/python3 tests/bench/profile/measure.py >"$output/profile.json"
   echo "bench: the case study"
   build/release/bin/constrictor run --seed 1 --report "$output/case_study" >"$output/case_study.txt" 2>&1 || {
     tail -5 "$output/case_study.txt" >&2

@@ -7,7 +7,8 @@
 #   all       all of these: what all programs need
 #   tests     what the tests and benchmarks need in addition to core, which is all, and Fast DDS with its Java runtime
 #   tools     what formatting, static analysis and the documentation need in addition
-#   bench     MuJoCo, with which a benchmark compares the physics, and ddsperf, with which it compares the messages
+#   bench     MuJoCo, with which a benchmark compares physics and rendering, ddsperf, with which it compares the
+#             messages, and perf, which shows the CPU time by groups of functions
 #   browser   Chromium, for the long test of the dashboard's page
 #   cluster   GNU parallel and Slurm, for scripts/evaluate_on_hosts.sh and scripts/evaluate_slurm.sh and their long test
 #   package   what scripts/package.sh needs in addition to make Debian packages
@@ -70,7 +71,7 @@ tests=(
 # The official reader of recordings is a package of npm. A Node.js from elsewhere brings its own npm.
 command -v npm >/dev/null || tests+=(nodejs npm)
 tools=(clang-format clang-tidy doxygen shellcheck)
-bench=(libmujoco-dev)
+bench=(libmujoco-dev linux-perf)
 # for the long tests: the page of the dashboard
 browser=(chromium)
 # evaluations on several machines
@@ -96,7 +97,7 @@ for group in "${@:-core}"; do
     cluster) packages+=("${cluster[@]}") ;;
     package) packages+=("${package[@]}") ;;
     boot) packages+=("${boot[@]}") ;;
-    --help) sed -n '2,16s/^# //p' "$0"; exit 0 ;;
+    --help) sed -n '2,17s/^# //p' "$0"; exit 0 ;;
     *) echo "setup: there is no package group \"$group\"; accepted: $accepted" >&2; exit 64 ;;
   esac
 done

@@ -21,7 +21,7 @@ const std::map<std::string, std::string>& wrappers() {
 /// Namespaces of libraries that are opened to declare a type of theirs without their header.
 const std::set<std::string> kForeign = {"CLI", "YAML", "cv"};
 /// Folders of tests that belong to no code: they test the project, or all components.
-const std::set<std::string> kOfTheWhole = {"tests/unit/hostile", "tests/unit/layout"};
+const std::set<std::string> kOfTheWhole = {"tests/unit/hostile", "tests/unit/layout", "tests/unit/steady_state"};
 
 /// The namespaces of the folders in which a file is, without "constrictor::".
 std::set<std::string> namespaces_of(const fs::path& folder) {
