@@ -88,6 +88,21 @@ Case compare_fine_solutions() {
           measure_gait(robot, lateral_gait(robot, setting.gait), fine).speed_m_s, 0.01};
 }
 
+/// Compares the speed and the power with an elliptic bound on the friction in both models, at the ends of the modules.
+void compare_ellipse(Section& section) {
+  const RobotModel robot = mamba();
+  const Setting setting;
+  SolverSettings elliptic;
+  elliptic.elliptic_friction = true;
+  const PlanarModel model(planar_robot(robot, FrictionPlaces::kModuleEnds),
+                          {FrictionLaw::kEllipse, setting.along, setting.across});
+  const PlanarMeasurement planar = measure_planar(model, setting.gait, kSettleCycles, 2);
+  const GaitMeasurement simulated = measure_gait(robot, lateral_gait(robot, setting.gait), elliptic, kSettleCycles);
+  section.cases.push_back({"defaults, elliptic friction: ends", "m/s", planar.speed_m_s, simulated.speed_m_s, kAim});
+  section.cases.push_back({"defaults, elliptic friction: power that friction takes, ends", "W", planar.power_w,
+                           simulated.friction_j / simulated.duration_s, kAim});
+}
+
 /// Compares the torque after the servos have become a thousand times as stiff: the joints then follow their setpoints
 /// as exactly as those of the planar model, and the points that do not slip hold the same forces against each other.
 Case compare_stiff_servos(double planar_nm) {
@@ -167,6 +182,7 @@ Section check_planar_model() {
   section.cases.push_back({"defaults: power that friction takes, ends", "W", usual.ends.power_w,
                            usual.simulated.friction_j / usual.simulated.duration_s, kAim});
   section.cases.push_back(compare_fine_solutions());
+  compare_ellipse(section);
   section.cases.push_back(compare_stiff_servos(usual.ends.torque_rms_nm));
   Figure figure{"Speed of lateral undulation: simulation and planar model", "planar_model.png", {}};
   for (const Sweep& sweep : sweeps()) compare_sweep(section, figure, sweep);

@@ -117,8 +117,16 @@ PlanarModel::Instant PlanarModel::evaluate(const PlanarState& state, const Joint
       if (friction_.law == FrictionLaw::kViscous) return -coefficient * v;
       return -coefficient * point.weight_n * v / std::hypot(v, friction_.smoothing_m_s);
     };
-    const double f_along = force(friction_.along, along);
-    const double f_across = force(friction_.across, across);
+    double f_along = force(friction_.along, along);
+    double f_across = force(friction_.across, across);
+    if (friction_.law == FrictionLaw::kEllipse) {
+      const double u = friction_.along * along;
+      const double v = friction_.across * across;
+      const double smoothing = std::sqrt(friction_.along * friction_.across) * friction_.smoothing_m_s;
+      const double share = -point.weight_n / std::hypot(u, v, smoothing);
+      f_along = share * friction_.along * u;
+      f_across = share * friction_.across * v;
+    }
     fx[i] += at.cosine[i] * f_along - at.sine[i] * f_across;
     fy[i] += at.sine[i] * f_along + at.cosine[i] * f_across;
     moment[i] += point.offset_m * f_across;

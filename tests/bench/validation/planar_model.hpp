@@ -33,11 +33,13 @@ struct PlanarRobot {
   std::vector<FrictionPoint> points;
 };
 
-enum class FrictionLaw { kCoulomb, kViscous };
+enum class FrictionLaw { kCoulomb, kViscous, kEllipse };
 
-/// The force of the ground on a point, along and across its link separately, as in the book.
+/// The force of the ground on a point, along and across its link; except for the ellipse separately, as in the book.
 /// Coulomb: -coefficient * weight * v / sqrt(v^2 + smoothing^2); the book has the sign of v, which RK4 cannot
-/// integrate. Viscous: -coefficient [N s/m] * v.
+/// integrate. Viscous: -coefficient [N s/m] * v. Ellipse (not in the book): of all forces within the ellipse whose half
+/// axes are coefficient * weight, the one that takes the most power: -weight * D D v / |D v|, D = diag(along, across),
+/// smoothed likewise.
 struct GroundFriction {
   FrictionLaw law = FrictionLaw::kCoulomb;
   double along = 0.05;
