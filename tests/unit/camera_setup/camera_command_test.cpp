@@ -42,7 +42,7 @@ TEST(CameraCommand, AMountWithoutABoardInViewSaysWhatItSeesAndEnds) {
 
 TEST(CameraCommand, EachSubcommandShowsAnExampleOfItself) {
   for (const std::string name : {"show", "calibrate", "mount", "colours"}) {
-    testing::Process help({program("camera_setup"), name, "--help"});
+    testing::Process help({testing::program("camera_setup"), name, "--help"});
     EXPECT_EQ(help.wait(20s), 0) << help.errors();
     EXPECT_NE(help.output().find("EXAMPLES\n  constrictor camera " + name + " --"), std::string::npos) << help.output();
   }
