@@ -11,7 +11,7 @@ namespace {
 
 using namespace constrictor;
 
-class Reader : public StatefulComponent<toys::Mixer> {
+class Reader : public StatefulComponent<testing::toys::Mixer> {
  public:
   Reader(Wiring& wiring, const Setup& setup)
       : joints_(wiring.latest(topics::kJointState)), prints_(setup.component == "member_1") {}
@@ -33,7 +33,7 @@ class Reader : public StatefulComponent<toys::Mixer> {
 int main(int argc, char** argv) {
   ensure_numeric_environment(argv);
   const std::string name = argc > 1 ? argv[1] : "";
-  if (name == "physics") return host_main(argc - 1, argv + 1, {toys::plant()});
+  if (name == "physics") return host_main(argc - 1, argv + 1, {testing::toys::plant()});
   if (name.starts_with("member_")) {
     const ComponentFactory reader{
         name, [](Wiring& wiring, const Setup& setup) { return std::make_unique<Reader>(wiring, setup); }};
