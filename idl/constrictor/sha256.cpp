@@ -9,7 +9,7 @@
 namespace constrictor {
 namespace {
 
-EVP_MD_CTX* context_of(void* context) { return static_cast<EVP_MD_CTX*>(context); }
+EVP_MD_CTX* context_of(const auto& context) { return static_cast<EVP_MD_CTX*>(context.get()); }
 
 void require(int success) {
   if (success != 1) {
@@ -29,7 +29,7 @@ const EVP_MD* algorithm() {
 
 Sha256::Sha256() : context_(EVP_MD_CTX_new()) { require(context_ != nullptr ? 1 : 0); }
 
-Sha256::~Sha256() { EVP_MD_CTX_free(context_of(context_)); }
+void Sha256::Free::operator()(void* context) const { EVP_MD_CTX_free(static_cast<EVP_MD_CTX*>(context)); }
 
 void Sha256::update(std::span<const std::byte> bytes) {
   if (!begun_) require(EVP_DigestInit_ex(context_of(context_), algorithm(), nullptr));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -14,15 +15,15 @@ class Sha256 {
  public:
   using Digest = std::array<std::uint8_t, 32>;
   Sha256();
-  ~Sha256();
-  Sha256(const Sha256&) = delete;
-  Sha256& operator=(const Sha256&) = delete;
   void update(std::span<const std::byte> bytes);
   /// Returns the digest; the next update() begins a new one.
   [[nodiscard]] Digest finish();
 
  private:
-  void* context_;
+  struct Free {
+    void operator()(void* context) const;
+  };
+  std::unique_ptr<void, Free> context_;
   bool begun_ = false;
 };
 
