@@ -17,14 +17,11 @@ import tempfile
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from arguments import whole  # noqa: E402  tests/bench/arguments.py
+
 ROOT = Path(__file__).resolve().parents[3]
 PATIENCE_S = 60  # for the first motion, and for the end of the run
-
-
-def whole(text):
-    if not text.isdigit() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"found '{text}', accepted a whole number from 1")
-    return int(text)
 
 
 def launch(command):
@@ -58,7 +55,7 @@ def launch(command):
 def main():
     parser = argparse.ArgumentParser(prog="launch", description=__doc__.splitlines()[0])
     parser.add_argument("--command", default=str(ROOT / "build" / "release" / "bin" / "constrictor"))
-    parser.add_argument("--launches", type=whole, default=5)
+    parser.add_argument("--launches", type=whole(1), default=5)
     options = parser.parse_args()
     if not os.access(options.command, os.X_OK):
         sys.exit(f"launch: there is no program {options.command}; run: ./scripts/build.sh")

@@ -18,25 +18,17 @@ import tempfile
 import threading
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from arguments import whole  # noqa: E402  tests/bench/arguments.py
+
 ROOT = Path(__file__).resolve().parents[3]
 SETTLE_TICKS = 200  # before the first measured one
 PARTS = 5
 PATIENCE_S = 120  # for one run
 
 
-def whole(text, least, most, step=1):
-    if not text.isdigit() or not least <= int(text) <= most or int(text) % step != 0:
-        multiple = f", a multiple of {step}" if step > 1 else ""
-        raise argparse.ArgumentTypeError(f"found '{text}', accepted a whole number from {least} to {most}{multiple}")
-    return int(text)
-
-
 def sizes(text):
-    return [whole(size, 2, 100) for size in text.split(",")]
-
-
-def ticks(text):
-    return whole(text, 500, 10000, 500)
+    return [whole(2, 100)(size) for size in text.split(",")]
 
 
 def cpu_s(processes):
@@ -107,7 +99,7 @@ def main():
     parser = argparse.ArgumentParser(prog="members", description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=str(ROOT / "build" / "release" / "bin" / "bench_members"))
     parser.add_argument("--sizes", type=sizes, default=[2, 8, 16, 32])
-    parser.add_argument("--ticks", type=ticks, default=500)
+    parser.add_argument("--ticks", type=whole(500, 10000, 500), default=500)
     options = parser.parse_args()
     if not os.access(options.program, os.X_OK):
         sys.exit(f"members: there is no program {options.program}; run: ./scripts/build.sh --tests bench_members")

@@ -15,17 +15,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from arguments import whole  # noqa: E402  tests/bench/arguments.py
+
 CONFIGURATION = Path(__file__).resolve().parents[3] / "deploy" / "cyclonedds" / "loopback.xml"
 WAIT_S = 10  # for all processes to find each other
 LINE = re.compile(r" 50% (?P<median_us>[\d.]+)us .* cnt (?P<count>\d+)$")
-
-
-def whole(least):
-    def parse(text):
-        if not text.isdigit() or int(text) < least:
-            raise argparse.ArgumentTypeError(f"found '{text}', accepted a whole number from {least}")
-        return int(text)
-    return parse
 
 
 def pss_mib(pid):

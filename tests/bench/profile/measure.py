@@ -20,6 +20,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from arguments import whole  # noqa: E402  tests/bench/arguments.py
+
 ROOT = Path(__file__).resolve().parents[3]
 PATIENCE_S = 300  # for the run
 SAMPLE = re.compile(r"^\s*(?P<comm>.+?)\s+(?P<pid>\d+)/(?P<tid>\d+)\s+[0-9a-f]+ (?P<symbol>.*) \((?P<file>.*)\)$")
@@ -37,14 +40,6 @@ LIBRARIES = {
     "drawing the figure": ["libcairo", "libpango", "libfreetype", "libfontconfig", "libpng", "libz.", "libpixman",
                            "libharfbuzz", "libglib"],
 }
-
-
-def whole(least):
-    def parse(text):
-        if not text.isdigit() or int(text) < least:
-            raise argparse.ArgumentTypeError(f"found '{text}', accepted a whole number from {least}")
-        return int(text)
-    return parse
 
 
 def why_not():

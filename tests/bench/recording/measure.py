@@ -7,6 +7,10 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from arguments import whole  # noqa: E402  tests/bench/arguments.py
 
 KINDS = {"none": [], "off": ["--record", "--images", "off"], "recompute": ["--record", "--images", "recompute"],
          "on": ["--record", "--images", "on"]}
@@ -21,16 +25,10 @@ def kinds(text):
     return chosen
 
 
-def whole(text):
-    if not text.isdigit() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"found '{text}', accepted a whole number from 1")
-    return int(text)
-
-
 def parse():
     parser = argparse.ArgumentParser(prog="bench_recording", add_help=False)
-    parser.add_argument("--seconds", type=whole, default=40)
-    parser.add_argument("--rounds", type=whole, default=5)
+    parser.add_argument("--seconds", type=whole(1), default=40)
+    parser.add_argument("--rounds", type=whole(1), default=5)
     parser.add_argument("--kinds", type=kinds, default=list(KINDS))
     parser.add_argument("--scenario", default="case_study")
     parser.add_argument("--programs", required=True)
