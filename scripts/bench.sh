@@ -26,7 +26,7 @@ while [ $# -gt 0 ]; do
 done
 
 groups=(core tests)
-targets=(bench_world bench_tick bench_physics bench_camera bench_perception bench_growth bench_members bench_table)
+targets=(bench_world bench_tick bench_camera bench_perception bench_growth bench_members bench_table)
 if [ $peers = 1 ]; then groups+=(bench); targets+=(bench_engines bench_renderers); fi
 if [ $mission = 1 ]; then targets+=(programs); fi
 ./scripts/setup.sh "${groups[@]}"
@@ -42,7 +42,7 @@ run_part() {
   "build/release/bin/bench_$part" "$@" --benchmark_out="$output/$part.json" --benchmark_out_format=json \
     >"$output/$part.txt"
 }
-for part in world physics camera perception growth; do run_part "$part"; done
+for part in world camera perception growth; do run_part "$part"; done
 # Parts and wholes take turns, so that what disturbs the machine disturbs both.
 run_part tick --benchmark_repetitions=3 --benchmark_enable_random_interleaving=true
 echo "bench: members in processes of their own"
