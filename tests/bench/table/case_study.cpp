@@ -42,9 +42,9 @@ void add_case_study(const Results& results, Table& table) {
   const double physics_ms = 50.0 * reference->second;  // for one second of simulated time
   const double simulated_s = report.value("sim_time_s", 1.0);
   table.text += fmt::format(
-      "\n## The case study: {:.1f} s simulated in {:.1f} s, {:.1f} times real time\n\nThe physics alone needs {:.1f} "
-      "ms "
-      "for one second of simulated time (`{}`).\n\n| process | CPU ms per simulated s | share of the physics alone | "
+      "\n## The case study: {:.1f} s simulated in {:.1f} s, {:.1f} times real time\n\nThe physics alone needs "
+      "{:.1f} ms for one second of simulated time (`{}`).\n\n| process | CPU ms per simulated s | share of the physics "
+      "alone | "
       "budget | greatest PSS, MiB | budget | |\n|---|---|---|---|---|---|---|\n",
       simulated_s, report.value("wall_time_s", 0.0), report.value("real_time_factor", 0.0), physics_ms, kReference);
   double sum_ms = 0.0;

@@ -54,9 +54,9 @@ void add_engines(const Results& results, Table& table) {
 void add_renderers(const Results& results, Table& table) {
   if (results.group_ms("renderer").empty()) return;
   table.text +=
-      "\n## The renderer and MuJoCo's on OSMesa\n\nAn image of 320 x 240 pixels of a like scene: ground with a line "
-      "and "
-      "a zone, the robot, two objects.\n\n| shadows | `sim/render`, ms | MuJoCo, ms | `sim/render` is faster by "
+      "\n## The renderer and MuJoCo's on OSMesa\n\nAn image of 320 x 240 pixels of a like scene: ground with a "
+      "line and a zone, the robot, two objects.\n\n| shadows | `sim/render`, ms | MuJoCo, ms | `sim/render` is faster "
+      "by "
       "|\n|---|---|---|---|\n";
   const auto& times = results.times_ms();
   for (const auto& [shadows, what] : {std::pair{1, "yes"}, std::pair{0, "no"}}) {

@@ -1,18 +1,13 @@
 #include "bench/table/results.hpp"
 
-#include <algorithm>
 #include <fstream>
+
+#include "bench/median.hpp"
 
 namespace constrictor::bench {
 namespace {
 
 using nlohmann::json;
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 /// [ms] CPU time of a result; a part that measures itself reports its time as the real one.
 double time_ms(const json& result, const std::string& name) {

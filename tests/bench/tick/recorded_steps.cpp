@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "bench/median.hpp"
 #include "component/data_path.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 #include "sim/world/ground_torques.hpp"
@@ -21,12 +22,6 @@ constexpr int kRepetitions = 5;     // of a measurement
 /// branches of the code, so that each part would seem to take a microsecond longer.
 double wall_time_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// [s] what an empty measurement shows: the time to read the clock.
@@ -54,6 +49,11 @@ void RecordedStep::begin(ChainDynamics& engine) {
   drives_ = recorded_drives_;
   rows_.resize(drives_.size());
   contacts_.begin_tick();
+}
+
+void RecordedStep::run_until(Part end, const World& world, ContactFinder& finder, ChainDynamics& engine) {
+  for (auto part = Part::kServos; part < end; part = static_cast<Part>(static_cast<int>(part) + 1))
+    run(part, world, finder, engine);
 }
 
 void RecordedStep::run(Part part, const World& world, ContactFinder& finder, ChainDynamics& engine) {
@@ -117,8 +117,7 @@ double RecordedTicks::run(std::size_t tick, Part part) {
   for (std::size_t i = 0; i < kSteps; ++i) {
     RecordedStep& step = steps_[kSteps * tick + i];
     step.begin(engine_);
-    for (auto done = Part::kServos; done < part; done = static_cast<Part>(static_cast<int>(done) + 1))
-      step.run(done, world_, finder_, engine_);
+    step.run_until(part, world_, finder_, engine_);
     const double from_s = wall_time_s();
     step.run(part, world_, finder_, engine_);
     used_s += wall_time_s() - from_s - clock_s();
@@ -135,8 +134,7 @@ double RecordedTicks::measure(std::size_t tick, Part part) {
 bool RecordedTicks::exact() {
   for (RecordedStep& step : steps_) {
     step.begin(engine_);
-    for (auto part = Part::kServos; part < Part::kEnd; part = static_cast<Part>(static_cast<int>(part) + 1))
-      step.run(part, world_, finder_, engine_);
+    step.run_until(Part::kEnd, world_, finder_, engine_);
     if (!step.same_end(engine_)) return false;
   }
   return true;

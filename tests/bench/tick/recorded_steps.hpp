@@ -23,6 +23,8 @@ class RecordedStep {
 
   /// Goes back to the beginning of the step.
   void begin(ChainDynamics& engine);
+  /// Does the parts before `end`, from the first one on.
+  void run_until(Part end, const World& world, ContactFinder& finder, ChainDynamics& engine);
   /// Does one part of the step. The parts must be done in their order.
   void run(Part part, const World& world, ContactFinder& finder, ChainDynamics& engine);
   /// Whether the engine has the same state as the recorded one after the step, bit for bit.
