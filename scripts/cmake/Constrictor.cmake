@@ -172,7 +172,9 @@ add_custom_target(constrictor_git_revision
   BYPRODUCTS ${CONSTRICTOR_GIT_REVISION} COMMENT "")
 function(constrictor_git_revision program)
   target_sources(${program} PRIVATE ${CONSTRICTOR_GIT_REVISION})
-  set_source_files_properties(${CONSTRICTOR_GIT_REVISION} PROPERTIES GENERATED ON SKIP_PRECOMPILE_HEADERS ON)
+  # By itself, because it changes with each commit and the other files of the program do not.
+  set_source_files_properties(${CONSTRICTOR_GIT_REVISION} PROPERTIES GENERATED ON SKIP_PRECOMPILE_HEADERS ON
+                                                                     SKIP_UNITY_BUILD_INCLUSION ON)
   add_dependencies(${program} constrictor_git_revision)
 endfunction()
 

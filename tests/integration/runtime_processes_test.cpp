@@ -130,7 +130,7 @@ TEST(RuntimeProcesses, NoMemberGivesUpAtASlowPace) {
     const std::string roster = kRoster + ",overview";
     for (const auto& name : kEach) run.start(name, 1, {}, roster);
     run.start("overview", 1, {}, roster);
-    const std::string result = run.result();
+    std::string result = run.result();
     for (const auto& [group, process] : run.processes)
       EXPECT_EQ(process.errors().find("gave up"), std::string::npos) << process.errors();
     return result;

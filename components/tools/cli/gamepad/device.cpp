@@ -100,7 +100,8 @@ void GamepadDevice::check(const GamepadMapping& mapping, const std::string& mapp
   const auto need = [&](const char* key, unsigned type, std::uint16_t code) {
     if (libevdev_has_event_code(device.get(), type, code)) return;
     std::string has;
-    for (std::uint16_t other = 0; other < (type == EV_ABS ? ABS_CNT : KEY_CNT); ++other) {
+    const std::uint16_t count = type == EV_ABS ? ABS_CNT : KEY_CNT;
+    for (std::uint16_t other = 0; other < count; ++other) {
       if (libevdev_has_event_code(device.get(), type, other))
         has += (has.empty() ? "" : ", ") + event_code_name(type, other);
     }
