@@ -39,7 +39,8 @@ void objects(benchmark::State& state) {
   Scenario scenario;
   for (int i = 0; i < state.range(0); ++i) {
     ScenarioObject object;
-    object.position_m = {2.0 + 0.4 * (i % 10), 3.0 + 0.4 * (i / 10)};
+    const int column = i % 10, row = i / 10;
+    object.position_m = {2.0 + 0.4 * column, 3.0 + 0.4 * row};
     scenario.objects.push_back(object);
   }
   undulate(state, robot_of(24), scenario);

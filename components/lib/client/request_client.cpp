@@ -61,10 +61,10 @@ RequestClient::RequestClient(std::unique_ptr<Endpoints> endpoints, RequestClient
   if (!options_.key) options_.key = run_key(endpoints_->domain_number);
 }
 
-RequestClient::RequestClient(std::uint32_t domain, RequestClientOptions options)
+RequestClient::RequestClient(std::uint32_t domain, const RequestClientOptions& options)
     : RequestClient(Endpoints::join(domain, options.lease, options.lease_by_hand), options) {}
 
-RequestClient::RequestClient(std::int32_t participant, std::uint32_t domain, RequestClientOptions options)
+RequestClient::RequestClient(std::int32_t participant, std::uint32_t domain, const RequestClientOptions& options)
     : RequestClient(
           std::make_unique<Endpoints>(domain, std::nullopt, participant, options.lease, options.lease_by_hand),
           options) {}

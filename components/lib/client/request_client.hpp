@@ -44,9 +44,9 @@ struct RequestClientOptions {
 class RequestClient {
  public:
   /// Joins the DDS domain of a run (find_domain()). A process joins each domain once.
-  RequestClient(std::uint32_t domain, RequestClientOptions options);
+  RequestClient(std::uint32_t domain, const RequestClientOptions& options);
   /// The same on a participant that this process already has in `domain`. It must outlive this object.
-  RequestClient(std::int32_t participant, std::uint32_t domain, RequestClientOptions options);
+  RequestClient(std::int32_t participant, std::uint32_t domain, const RequestClientOptions& options);
   ~RequestClient();
 
   /// Waits until `input` reads requests and its Authority messages have arrived, also those that it keeps for programs

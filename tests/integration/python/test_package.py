@@ -271,9 +271,8 @@ def test_ctrl_c_ends_a_wait_and_the_program_leaves_the_run(launched, wait):
         "    print('waiting', flush=True)\n"
         f"    {wait}\n"
     )
-    victim = subprocess.Popen(
-        [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+    pipe = subprocess.PIPE
+    victim = subprocess.Popen([sys.executable, "-c", program], stdout=pipe, stderr=pipe, text=True)
     try:
         assert victim.stdout.readline() == "waiting\n"
         victim.send_signal(signal.SIGINT)

@@ -21,8 +21,8 @@ std::vector<std::string> source_violations(const std::filesystem::path& root);
 /// its projects are users of this one.
 std::vector<std::string> namespace_violations(const std::filesystem::path& root);
 
-/// Source files of more than 300 lines, unless the README of their folder says "`NAME` is longer than 300 lines
-/// because" and the reason.
+/// C++, IDL, Python, JavaScript, shell and CMake files of more than 300 lines, unless the README of their folder, or of
+/// the nearest folder above that has one, says "`NAME` is longer than 300 lines because" and the reason.
 std::vector<std::string> long_files(const std::filesystem::path& root);
 
 /// Lines of more than 120 columns in C++, IDL, CMake, YAML and shell files, and in README files, as "file:12: 130

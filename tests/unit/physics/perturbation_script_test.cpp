@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace constrictor {
@@ -28,7 +29,7 @@ class PerturbationScriptTest : public ::testing::Test {
   double velocity_after(double seconds) {
     World world(robot_, scenario_);
     PerturbationScript script(scenario_);
-    for (int tick = 0; tick < static_cast<int>(seconds / 0.02 + 0.5); ++tick) {
+    for (int tick = 0; tick < std::lround(seconds / 0.02); ++tick) {
       script.apply(world, 0.02 * tick);
       world.advance(0.02);
     }
@@ -39,7 +40,7 @@ class PerturbationScriptTest : public ::testing::Test {
   Eigen::Vector2d way_after(double seconds) {
     World world(robot_, scenario_);
     PerturbationScript script(scenario_);
-    for (int tick = 0; tick < static_cast<int>(seconds / 0.02 + 0.5); ++tick) {
+    for (int tick = 0; tick < std::lround(seconds / 0.02); ++tick) {
       script.apply(world, 0.02 * tick);
       world.advance(0.02);
     }

@@ -29,7 +29,7 @@ bool drive(std::int64_t tick, msg::JointCommand& command) {
 /// A cylinder in the body's way, a box and a peg behind it, and a push on the box.
 std::filesystem::path crowded_scene() {
   static const testing::TemporaryFolder folder;  // of this process alone: tests run side by side
-  const std::filesystem::path file = folder.path() / "crowded.yaml";
+  std::filesystem::path file = folder.path() / "crowded.yaml";
   std::ofstream(file) << R"(name: crowded
 start: {position_m: [0, 0], yaw_rad: 0}
 objects:

@@ -11,9 +11,9 @@ constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kPeriod = 100 * kMs;
 
 /// A source that sends a frame every period into a buffer, and a reader that needs 2 ms for each.
-class Stream {
+class SteadyStream {
  public:
-  explicit Stream(std::int64_t promised_ns = kPeriod) : clock(promised_ns) {}
+  explicit SteadyStream(std::int64_t promised_ns = kPeriod) : clock(promised_ns) {}
 
   /// The next frame that the source sends; returns the verdict, and the true time of sending.
   FrameClock::Verdict next() {
@@ -31,7 +31,7 @@ class Stream {
 };
 
 TEST(FrameClock, KnowsWhenFramesOfASteadyStreamWereSent) {
-  Stream stream;
+  SteadyStream stream;
   stream.next();
   for (int i = 0; i < 50; ++i) {
     const auto verdict = stream.next();
@@ -42,7 +42,7 @@ TEST(FrameClock, KnowsWhenFramesOfASteadyStreamWereSent) {
 }
 
 TEST(FrameClock, DiscardsFramesThatHaveWaitedWhileTheReaderSlept) {
-  Stream stream;
+  SteadyStream stream;
   for (int i = 0; i < 20; ++i) static_cast<void>(stream.next());
   stream.now += 2000 * kMs;  // the process was stopped; 20 frames wait in the buffer
   int stale = 0;
@@ -58,7 +58,7 @@ TEST(FrameClock, DiscardsFramesThatHaveWaitedWhileTheReaderSlept) {
 }
 
 TEST(FrameClock, AFrameReadLateIsOlderThanItsReading) {
-  Stream stream;
+  SteadyStream stream;
   for (int i = 0; i < 20; ++i) static_cast<void>(stream.next());
   stream.now += 160 * kMs;  // a busy computer; two frames wait, less than a silence
   const auto first = stream.next();
@@ -69,7 +69,7 @@ TEST(FrameClock, AFrameReadLateIsOlderThanItsReading) {
 }
 
 TEST(FrameClock, CountsFramesThatTheSourceLeavesOut) {
-  Stream stream;
+  SteadyStream stream;
   for (int i = 0; i < 20; ++i) static_cast<void>(stream.next());
   stream.sent += kPeriod;  // one is left out
   EXPECT_EQ(stream.next().missing, 1);
@@ -78,7 +78,7 @@ TEST(FrameClock, CountsFramesThatTheSourceLeavesOut) {
 
 TEST(FrameClock, LearnsTheTrueRateWhicheverIsPromised) {
   for (const std::int64_t promised : {kPeriod / 10, kPeriod, 4 * kPeriod}) {
-    Stream stream(promised);
+    SteadyStream stream(promised);
     std::vector<bool> fresh;
     for (int i = 0; i < 80; ++i) fresh.push_back(stream.next().fresh);
     EXPECT_NEAR(static_cast<double>(stream.clock.period_ns()), static_cast<double>(kPeriod), 5.0 * kMs) << promised;
