@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures the parts and the whole: writes DIR/bench.json and the table DIR/bench.md, and prints the table.
 # Usage: scripts/bench.sh [--output DIR] [--no-peers] [--no-mission]
-#   --output DIR   folder of the results (default: build/bench)
+#   --output DIR   folder of the results, which replace those of an earlier call there (default: build/bench)
 #   --no-peers     without the comparisons with MuJoCo, which takes some minutes, and with ddsperf
 #   --no-mission   without the runs of the case study: CPU time by process and function, launch
 # Example: scripts/bench.sh --no-peers
@@ -32,7 +32,11 @@ if [ $mission = 1 ]; then targets+=(programs); fi
 ./scripts/setup.sh "${groups[@]}"
 ./scripts/build.sh --tests "${targets[@]}"
 mkdir -p "$output"
-rm -rf "$output"/*.json "$output/case_study"
+# Results of an earlier call must not appear in the table. The folder may also hold files of others, which stay.
+for part in world tick camera perception growth members engines renderers ddsperf launch profile bench; do
+  rm -f "$output/$part.json"
+done
+rm -rf "$output/case_study"
 
 # The other options of the program are those of Google Benchmark.
 run_part() {

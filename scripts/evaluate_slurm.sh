@@ -21,7 +21,7 @@ while [ $# -gt 0 ] && [ "$1" != -- ]; do
     --parts) parts=${2-} ;;
     --command) command=${2-} ;;
     --sbatch) options=${2-} ;;
-    *) fail "unknown option $1 (see --help)" ;;
+    *) fail "there is no option \"$1\"; accepted: --output, --parts, --command, --sbatch, --wait, --" ;;
   esac
   if [ $# -lt 2 ]; then fail "$1 needs a value (see --help)"; fi
   shift 2

@@ -12,7 +12,10 @@ measure() {
   output=$root/build/$name
   robots=$root/components/lib/robot
   while [ $# -gt 0 ]; do
-    case "$1" in --output|--robot) ;; *) echo "$name: unknown option $1 (see --help)" >&2; exit 64 ;; esac
+    case "$1" in
+      --output|--robot) ;;
+      *) echo "$name: there is no option \"$1\"; accepted: --output DIR, --robot ROBOT" >&2; exit 64 ;;
+    esac
     if [ $# -lt 2 ]; then echo "$name: $1 needs a value (see --help)" >&2; exit 64; fi
     case "$1" in
       --output) output=$(realpath -m "$2") ;;

@@ -30,7 +30,10 @@ while [ $# -gt 0 ]; do
     --quick) quick=1; shift; continue ;;
     --) shift; more=("$@"); break ;;
     --seeds|--only|--scenario|--output|--time-limit|--jobs|--programs|--factors) ;;
-    *) fail 64 "unknown option $1 (see --help)" ;;
+    *)
+      fail 64 "there is no option \"$1\"; accepted: --quick, --seeds, --only, --scenario, --output, --time-limit, \
+--jobs, --programs, --factors, --"
+      ;;
   esac
   if [ $# -lt 2 ] || [ -z "$2" ]; then fail 64 "$1 needs a value (see --help)"; fi
   case "$1" in

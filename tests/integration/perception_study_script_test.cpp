@@ -86,7 +86,7 @@ TEST_F(PerceptionStudy, NamesWhatIsWrong) {
     EXPECT_EQ(process.wait(30s), status) << reason << process.output();
     EXPECT_NE(process.errors().find(reason), std::string::npos) << process.errors();
   };
-  refused({"--blur"}, 64, "unknown option --blur");
+  refused({"--blur"}, 64, "there is no option \"--blur\"; accepted: --quick, --seeds");
   refused({"--seeds"}, 64, "--seeds: found --, accepted a whole number from 1");
   refused({"--seeds", "0"}, 64, "--seeds: found 0, accepted a whole number from 1");
   refused({"--only", "noise,fog"}, 64, "--only: found 'fog', accepted noise, slip");

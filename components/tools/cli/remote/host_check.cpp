@@ -88,7 +88,7 @@ void check_network(HostLink& link, const LaunchManifest& manifest, std::uint32_t
     report.findings.push_back(kSilentAgent);
   } else if (const std::string error = link.echo_answer().value("error", ""); !error.empty()) {
     report.findings.push_back({"port in use", fmt::format("UDP port {} of {}: {}", port, ip, error),
-                               "end the run that uses this domain there, or choose another one with --run"});
+                               "end the run that uses this domain there, or choose another one with --domain N"});
   } else if (!packets_pass(link, own, ip, port)) {
     report.findings.push_back(
         {"ports closed", fmt::format("no packet to UDP port {} of {} came back to {}", port, ip, own), kPortsCure});
