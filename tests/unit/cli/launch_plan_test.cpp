@@ -6,10 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "cli/usage.hpp"
 #include "configuration/configuration.hpp"
+#include "support/project.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace constrictor::cli {
@@ -48,9 +50,13 @@ TEST_F(LaunchPlanTest, FindsFilesByTheirNames) {
   EXPECT_EQ(plan.manifest.scenario_file.filename(), "line.yaml");
   EXPECT_EQ(plan.manifest.robot_file.filename(), "serpens.yaml");
   EXPECT_TRUE(plan.manifest.scenario_file.is_absolute());
-  EXPECT_EQ(names_of(kManifests),
-            (std::vector<std::string>{"case_study", "case_study_fast", "case_study_live", "case_study_mx106",
-                                      "emulated_hardware", "emulated_servos", "manual", "outside_plant", "two_hosts"}));
+  std::vector<std::string> manifests;
+  for (const auto& entry : std::filesystem::directory_iterator(testing::source_path("deploy"))) {
+    if (entry.path().extension() == ".yaml") manifests.push_back(entry.path().stem());
+  }
+  std::sort(manifests.begin(), manifests.end());
+  EXPECT_FALSE(manifests.empty());
+  EXPECT_EQ(names_of(kManifests), manifests);
 }
 
 TEST_F(LaunchPlanTest, ARealPlantFollowsTheWallClock) {
