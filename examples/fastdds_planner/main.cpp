@@ -1,5 +1,5 @@
 // fastdds_planner: retrieves the objects as an external planner on Fast DDS. It uses the IDL files of Constrictor and
-// the contract in idl/README.md, but none of its headers and libraries.
+// the contract in idl/CLIENTS.md, but none of its headers and libraries.
 #include <unistd.h>
 
 #include <algorithm>

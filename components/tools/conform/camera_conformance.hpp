@@ -1,4 +1,4 @@
-// Checks whether a camera keeps the contract of idl/README.md. The head is turned and lifted slowly, by the plant of
+// Checks whether a camera keeps the contract of idl/CLIENTS.md. The head is turned and lifted slowly, by the plant of
 // the run, if there is one that obeys.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Checks whether a control keeps the contract of idl/README.md. No real joint moves: the checks play the plant.
+// Checks whether a control keeps the contract of idl/CLIENTS.md. No real joint moves: the checks play the plant.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// conform: does a part keep the contract of idl/README.md? `constrictor conform` becomes this program.
+// conform: does a part keep the contract of idl/CLIENTS.md? `constrictor conform` becomes this program.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -118,7 +118,7 @@ void add_part(CLI::App& app, Options& options, const PartKind& kind) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Checks whether a part keeps the contract of Constrictor (idl/README.md).", "constrictor conform"};
+  CLI::App app{"Checks whether a part keeps the contract of Constrictor (idl/CLIENTS.md).", "constrictor conform"};
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
   add_plant(app, options);

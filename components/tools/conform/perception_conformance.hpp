@@ -1,4 +1,4 @@
-// Checks whether a perception keeps the contract of idl/README.md, by images whose content is known exactly.
+// Checks whether a perception keeps the contract of idl/CLIENTS.md, by images whose content is known exactly.
 #pragma once
 
 #include <functional>

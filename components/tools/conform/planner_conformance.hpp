@@ -1,4 +1,4 @@
-// Checks whether a planner keeps the contract of idl/README.md: plays a whole mission to it, in which requests are
+// Checks whether a planner keeps the contract of idl/CLIENTS.md: plays a whole mission to it, in which requests are
 // refused and lost, authority is taken away, and objects are lost.
 #pragma once
 

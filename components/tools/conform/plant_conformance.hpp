@@ -1,4 +1,4 @@
-// Checks whether a plant keeps the contract of idl/README.md. Every motion is small and slow, and nothing moves before
+// Checks whether a plant keeps the contract of idl/CLIENTS.md. Every motion is small and slow, and nothing moves before
 // the measured posture is known.
 #pragma once
 

@@ -1,5 +1,5 @@
 // `constrictor topic` on topics that a process on Fast DDS writes. It announces no type information, as the contract in
-// idl/README.md prescribes for programs of others.
+// idl/CLIENTS.md prescribes for programs of others.
 #include "cyclone/domain_claim.hpp"
 #include "example_run.hpp"
 
