@@ -9,7 +9,7 @@
 namespace constrictor {
 
 struct PlantRelayConfig : PlantParameters {
-  double control_period_s = add(control_period_s, "period_s", 0.02, "s", {0.002, 0.2}, kAtStart, "Control tick");
+  double control_period_s = add(control_period_s, "period_s", 0.02, "s", {0.002, 0.2}, kAtStart, "Length of a tick");
   double patience_s = add(patience_s, "hardware.patience_s", 30.0, "s", {0.1, 3600.0}, kAtStart,
                           "Time to wait for the first measured posture; without it the run ends");
   int lost_after_ticks = add(lost_after_ticks, "hardware.lost_after_ticks", 5, "ticks", {1, 1000}, kAtStart,

@@ -10,7 +10,7 @@
 namespace constrictor {
 
 struct ServoBusConfig : PlantParameters {
-  double control_period_s = add(control_period_s, "period_s", 0.02, "s", {0.002, 0.2}, kAtStart, "Control tick");
+  double control_period_s = add(control_period_s, "period_s", 0.02, "s", {0.002, 0.2}, kAtStart, "Length of a tick");
   std::string bus_file = add(bus_file, "bus_file", "deploy/buses/mamba_emulated.yaml", {},
                              "Bus file: which servo moves which joint (components/lib/dynamixel/README.md)");
   double port_patience_s = add(port_patience_s, "port.patience_s", 10.0, "s", {0.0, 600.0}, kAtStart,

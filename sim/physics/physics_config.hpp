@@ -11,8 +11,8 @@
 namespace constrictor {
 
 struct PhysicsConfig : PlantParameters {
-  double control_period_s =
-      add(control_period_s, "period_s", 0.02, "s", {0.001, 0.2}, kAtStart, "Control tick; a multiple of solver.step_s");
+  double control_period_s = add(control_period_s, "period_s", 0.02, "s", {0.001, 0.2}, kAtStart,
+                                "Length of a tick; a multiple of solver.step_s");
   SolverSettings solver{
       add(solver.engine, "solver.engine", SolverSettings{}.engine, {kEngineOde, kEngineChain},
           "Engine: `chain` solves for the robot in generalised coordinates, exactly; `ode` is ODE's QuickStep"),

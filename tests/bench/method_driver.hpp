@@ -14,7 +14,7 @@ namespace constrictor {
 struct MethodTrial {
   std::string method;  ///< of control
   ControlConfig config{};
-  double period_s = 0.02;  ///< control tick
+  double period_s = 0.02;  ///< length of a tick
   double frequency_hz = 0.5;
   double curvature_1_m = 0.0;  ///< of the path
   double amplitude_rad = 0.5;

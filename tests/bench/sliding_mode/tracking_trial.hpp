@@ -13,7 +13,7 @@ namespace constrictor::sliding_mode {
 struct Trial {
   std::string method = "undulation";  ///< of control
   ControlConfig config{};
-  double period_s = 0.02;       ///< control tick
+  double period_s = 0.02;       ///< length of a tick
   double frequency_hz = 0.7;    ///< of the wave, as navigation travels
   double duration_s = 16.0;     ///< the first kSettle_s are not measured
   double friction_share = 1.0;  ///< of the skin's friction that the robot file states
