@@ -208,8 +208,8 @@ TEST_F(Teleoperation, CtrlCLeavesADefinedAuthorityAndPrintsIt) {
 }
 
 TEST_F(Teleoperation, ThePlannerContinuesAfterAnOperatorHasDriven) {
-  // At this pace the operator drives on the line. At 4x the robot had reached the object: the drive pressed the body
-  // against it, and a joint that slipped off moved faster than its setpoint while authority changed.
+  // At this pace the operator drives on the line. At a faster pace the robot may have reached the object, and the drive
+  // presses the body against it: a joint that slips off then moves faster than its setpoint while authority changes.
   Process launcher = start({"run", "case_study", "--in-process", "--pace", "1x", "--report", (dir_ / "r").string()});
   ASSERT_TRUE(launcher.wait_for("simulated", 60s)) << launcher.output() << launcher.errors();
   Watcher watcher(domain());

@@ -70,7 +70,7 @@ TEST(MappedLine, TheWayToALineThatBeginsAheadCountsAsALine) {
   EXPECT_NEAR(crossed->p.y(), 0.0, 0.03);
 }
 
-// A robot with an object drove out of bends, because the map had no line for a head that points across it.
+// The map has a line also for a head that points across it; without one, a robot with an object would leave the bend.
 TEST(MappedLine, LeadsAHeadThatPointsOutOfABendBackToTheLine) {
   const msg::FieldMap map = straight_line();
   for (const double side : {1.0, -1.0}) {

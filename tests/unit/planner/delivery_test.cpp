@@ -69,7 +69,7 @@ TEST_F(DeliveryTest, IsUndecidedUntilAnImageShowsTheObject) {
   EXPECT_EQ(memory_.recoveries, 0);
 }
 
-// The object lay 0.42 m from the centre of a zone of 0.40 m, and the mission was called a success.
+// An object that images show outside of its zone, even by 0.05 m, is not delivered.
 TEST_F(DeliveryTest, AnObjectSeenOutsideItsZoneIsRetrievedAgain) {
   find_line();
   fetch(msg::kColourGreen);
@@ -141,7 +141,7 @@ TEST_F(DeliveryTest, TheHandleTellsObjectsOfOneColourApart) {
   EXPECT_EQ(verdict(3, 3), Delivery::kOutside);
 }
 
-// The object left the open body farther than the map expected: the map keeps the old landmark and adds a new one.
+// The object has left the open body farther than the map expected: the map keeps the old landmark and adds a new one.
 TEST_F(DeliveryTest, AMorePreciseNewLandmarkIsTheDroppedObject) {
   map_dropped(msg::kColourGreen, 0.7, 0.1);
   EXPECT_EQ(verdict(2, 2), Delivery::kOutside);
@@ -159,8 +159,8 @@ TEST_F(DeliveryTest, AGlimpseOfAnObjectWhosePlaceIsUncertainIsNotASighting) {
   EXPECT_EQ(verdict(2), Delivery::kUncertain);
 }
 
-// The robot is so uncertain of its own place that nothing in its map is precise. With 0.34 m, an object lay 0.45 m from
-// the centre of its zone of 0.4 m.
+// The robot is so uncertain of its own place that nothing in its map is precise. An object that the map
+// shows 0.34 m from the centre may lie outside of its zone of 0.4 m.
 TEST_F(DeliveryTest, AnUncertainObjectThatStaysInViewIsJudgedByTheMap) {
   for (const double offset_m : {0.1, 0.25, 0.34, 0.7}) {
     forget();

@@ -51,8 +51,8 @@ TEST_F(MovedObjectTest, AGlimpseCountsOnlyIfItIsClearlyOutsideOfTheZone) {
   EXPECT_EQ(with_another(1.2, 0.2), Delivery::kOutside) << "4.5 standard deviations outside";
 }
 
-// The second green object was put down in front of the first one. In the map they changed their handles, the one that
-// counted as dropped was hidden, and the robot carried the other one away again.
+// An object may hide another one of its colour on the zone, and the two may exchange their handles in the map: they
+// count as delivered if one is in view there and the hidden one was last seen there.
 TEST_F(MovedObjectTest, TwoObjectsOfOneColourOnTheirZoneAreBothThere) {
   const auto both = [&](double dropped_m, double sd_m, double twin_m, std::int64_t twin_seen) {
     map_.objects[1] = landmark(msg::kBlobObject, 2, dropped_m, sd_m, -150);  // hidden since the drop
@@ -102,7 +102,7 @@ class PushedObjectTest : public PlannerTest {
   }
 };
 
-// The robot pushed the green object off its zone while it carried the red one, and the mission was called a success.
+// The robot may push the green object off its zone while it carries the red one. The mission has not succeeded then.
 TEST_F(PushedObjectTest, ADeliveredObjectThatWasPushedOffItsZoneIsRetrievedAgain) {
   deliver_green_and_release_red();
   for (int i = 0; i < 70 && memory_.state == kInspect; ++i) {
@@ -117,8 +117,7 @@ TEST_F(PushedObjectTest, ADeliveredObjectThatWasPushedOffItsZoneIsRetrievedAgain
   EXPECT_EQ(last_.parameters.object_colour, msg::kColourGreen);
 }
 
-// With seed 315263 of the standard variation an object was pushed off its zone again and again, until the time of the
-// mission was over.
+// An object that is pushed off its zone again and again must not use up the time of the mission.
 TEST_F(PushedObjectTest, AnObjectThatIsPushedOffAgainAndAgainIsPutAside) {
   deliver_green_and_release_red();
   memory_.attempts.resize(1);
@@ -134,7 +133,7 @@ TEST_F(PushedObjectTest, AnObjectThatIsPushedOffAgainAndAgainIsPutAside) {
   EXPECT_EQ(memory_.attempts[0].reason, "delivered: it was pushed off its zone");
 }
 
-// The robot touched the green object while it carried the red one, so that its place is uncertain at the end.
+// The robot has touched the green object while it carried the red one, so that its place is uncertain at the end.
 TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThatItTouched) {
   for (const double offset_m : {0.1, 0.7}) {
     forget();
@@ -145,7 +144,7 @@ TEST_F(PushedObjectTest, BeforeTheEndTheRobotLooksOnceMoreAtADeliveredObjectThat
   }
 }
 
-// The robot touched the green object after it had seen it on its zone. A look from afar has made the map certain since,
+// The robot has touched the green object after it saw it on its zone. A look from afar has made the map certain since,
 // but it may have been wrong about so small a move.
 TEST_F(PushedObjectTest, ATouchIsRememberedUntilTheRobotHasLookedFromNearBy) {
   for (const bool touched : {true, false}) {
@@ -177,7 +176,8 @@ TEST_F(PushedObjectTest, ATouchIsRememberedUntilTheRobotHasLookedFromNearBy) {
   }
 }
 
-// The body swept the green object 2.4 m away. The map may still have it on its zone, which no image has shown since.
+// The body has swept the green object 2.4 m away. The map may still have it on its zone, which no image has shown
+// since.
 TEST_F(PushedObjectTest, AnObjectThatAppearsFarAwayMayBeTheDeliveredOne) {
   for (const bool still_mapped : {true, false}) {
     forget();

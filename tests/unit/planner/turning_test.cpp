@@ -10,7 +10,7 @@ namespace {
 
 using enum MissionState;
 
-// The robot circled about the zone with the object until the mission's time was over.
+// A robot with an object cannot turn to a zone inside its turning circle: it drives on until the zone lies outside.
 TEST_F(PlannerTest, DrivesOnBeforeItTurnsToAZoneWithinItsTurningCircle) {
   find_line();
   fetch(msg::kColourGreen);
@@ -52,7 +52,7 @@ TEST_F(PlannerTest, DoesNotTurnBackAgainAtOnceIfThatWasInVain) {
   EXPECT_NEAR(time_s_ - since_s, config_.any_way_s * config_.holding_factor, 1.0);
 }
 
-// A robot at the wrong end of a short line turned back in vain every 77 s until the mission's time was over.
+// A robot at the wrong end of a short line turns back twice at most, and then searches without the line.
 TEST_F(PlannerTest, SearchesWithoutTheLineAfterTurningBackWasInVainTwice) {
   find_line();
   fetch(msg::kColourGreen);
@@ -92,8 +92,8 @@ TEST_F(PlannerTest, SearchesWithoutTheLineAfterTurningBackWasInVainTwice) {
   EXPECT_EQ(memory_.vain_turns, 0) << "the next load begins anew";
 }
 
-// The percepts show a zone earlier than the map does. The drop was refused in one mission of eleven, and a robot that
-// then searched for the line turned the wrong way.
+// The percepts show a zone earlier than the map does. The planner waits for the map, because navigation refuses to drop
+// at a zone that the map does not have.
 TEST_F(PlannerTest, FollowsTheLineUntilTheMapKnowsTheZone) {
   find_line();
   fetch(msg::kColourGreen);
@@ -107,8 +107,8 @@ TEST_F(PlannerTest, FollowsTheLineUntilTheMapKnowsTheZone) {
   EXPECT_EQ(memory_.state, kDrop);
 }
 
-// The border of the image cut the zone as long as the robot turned beside it, and the map never got it: the robot drove
-// round it for four minutes.
+// The map does not get a zone that the border of the image cuts: the robot then searches where images have shown it,
+// for a limited time.
 TEST_F(PlannerTest, SearchesWhereImagesHaveShownTheZone) {
   find_line();
   fetch(msg::kColourGreen);
@@ -127,8 +127,8 @@ TEST_F(PlannerTest, SearchesWhereImagesHaveShownTheZone) {
   EXPECT_FALSE(memory_.search_by_memory) << "it was no zone";
 }
 
-// An object that had fallen over was taken for a second zone. The robot dropped the object there, and the mission was
-// called a success.
+// An object that has fallen over may look like a second zone of its colour. The robot drops nothing there, unless its
+// pose is so uncertain that the zone in view may be the known one.
 TEST_F(PlannerTest, WhatLooksLikeASecondZoneIsNotOne) {
   find_line();
   fetch(msg::kColourGreen);
@@ -144,8 +144,7 @@ TEST_F(PlannerTest, WhatLooksLikeASecondZoneIsNotOne) {
   EXPECT_EQ(memory_.state, kDrop);
 }
 
-// The count of moves went on from search to search: now and then a new search began with moves that ignore the memory,
-// and a robot with an object drove away from the line for 32 s.
+// Each search begins with the moves that use the memory, however many moves earlier searches have made.
 TEST_F(PlannerTest, ANewSearchBeginsWithWhatItRemembers) {
   find_line();
   memory_.searches = 13;
