@@ -30,8 +30,8 @@ struct VerticalPlane {
 /// None if the plane lies behind the camera.
 [[nodiscard]] std::optional<VerticalPlane> vertical_plane(const GroundCamera& camera, double azimuth_rad);
 
-/// The azimuth at a share of the way from the right side (0) to the left side (1) of something in view: path `i` of
-/// `count`, spread over the middle `width` of it.
+/// Where path `i` of `count` crosses something in view, as a share of the way from its right side (0) to its left side
+/// (1). The paths are spread evenly over the middle `width` of this way.
 [[nodiscard]] double path_share(std::size_t i, std::size_t count, double width);
 
 /// The median; reorders `values`, which must not be empty.

@@ -17,8 +17,8 @@ namespace constrictor {
 /// spread evenly around 0; only 0 if the exposure time is 0.
 [[nodiscard]] std::vector<double> exposure_instants(double exposure_s);
 
-/// The poses `share` of the way from `before` to `now` after `now`: each body goes on with the velocity that it had.
-/// 0 gives `now`, -1 gives `before`. Both have the same bodies.
+/// The poses at a time after `now`, if each body keeps its velocity from `before` to `now`. `share` is this time
+/// divided by the time from `before` to `now`: 0 gives `now`, -1 gives `before`. Both have the same bodies.
 [[nodiscard]] ScenePoses extrapolated(const ScenePoses& before, const ScenePoses& now, double share);
 
 /// The errors of one finished image, in the order in which they arise: exposure, lens, white balance and gain,

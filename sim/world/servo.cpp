@@ -85,9 +85,9 @@ ServoRow Servo::position_row(double reference_rad, double reference_rate_rad_s, 
   const double inertia = model_.rotor_inertia_kg_m2 / h;
   const double angle = model_.measured_rad(elastic() ? motor_angle_rad_ : angle_rad);
   const double rate = elastic() ? motor_rate_rad_s_ : rate_rad_s;
-  // The spring kp acts from where the joint is at the beginning of the step. With at least half of h kp as damping that
-  // is stable at each step, and the damping of usual servos is far above it; the spring at the end of the step would
-  // add a damping of h kp that no servo has.
+  // The spring kp pulls from the angle at the beginning of the step. That is stable if the damping is at least
+  // h kp / 2, and the damping of usual servos is far larger. From the angle at the end of the step, the spring would
+  // add a damping of h kp, which no servo has.
   // Coulomb friction of the gear, as a damper that exerts it at the present rate: that never reverses the motion.
   const double friction = model_.gear_friction_nm / std::max(std::abs(rate), kCreep_rad_s);
   const double sum = inertia + std::max(kd, 0.5 * h * kp) + friction;

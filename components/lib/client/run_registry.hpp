@@ -46,12 +46,13 @@ class PublishedNote {
   PublishedNote(const PublishedNote&) = delete;
   PublishedNote& operator=(const PublishedNote&) = delete;
   [[nodiscard]] const std::string& token() const { return note_.token; }
-  /// For commands to the run, also when the files are gone, as those below /run/user are after a logout.
+  /// The data for commands to the run. They stay valid when the files are gone, as those below /run/user are after a
+  /// logout.
   [[nodiscard]] RunKey key() const { return {note_.run_id, note_.token}; }
   /// The file with the run's token; empty if the run has none.
   [[nodiscard]] const std::filesystem::path& token_file() const { return token_file_; }
-  /// Rewrites the note after a reset, which changes the seed. If it cannot be written, it stays as it was, which `warn`
-  /// is told: the run goes on.
+  /// Rewrites the note after a reset, which changes the seed. If the note cannot be written, it keeps the old seed,
+  /// `warn` is called with the reason, and the run goes on.
   void set_seed(std::uint64_t seed, const std::function<void(const std::string&)>& warn);
 
  private:

@@ -133,7 +133,8 @@ void print_nothing_done(const std::string& name, const ParamOptions& options, co
   fmt::print("{}\n", json_text(name == "get" ? refusal : Json::array({refusal}), 2));
 }
 
-/// Runs `param NAME`. What was thrown is printed also as JSON: wrong usage, and that there is no run.
+/// Runs `param NAME`. With --json, it also prints the reason of an exception as JSON, for example of wrong usage or
+/// of a missing run.
 int with_json(const std::string& name, const ParamOptions& options, int (*run)(const ParamOptions&)) {
   try {
     return run(options);

@@ -39,8 +39,8 @@ std::optional<double> half_way_s(const std::vector<Instant>& motion, double from
 }
 
 /// Integral of the measured rate by the way of the measured angle; empty if that way is shorter than `least_rad`. A
-/// sample that comes much sooner or later than usual after the one before is left out, because a driver that stood
-/// still for a moment measures a rate over a time of chance then.
+/// sample that comes much sooner or later than usual after the one before is left out: a driver that stood still for a
+/// moment measures its rate over a duration that can differ from the time between the samples.
 std::optional<double> velocity_ratio(const std::vector<Instant>& motion, std::size_t joint, double least_rad) {
   std::vector<const JointSample*> samples;
   for (const Instant& at : motion) {

@@ -1,4 +1,4 @@
-// The layout of the figure in its three formats, read by OpenCV and by eye of a parser.
+// The layout of the figure in its three formats: OpenCV reads PNG, and the text of SVG and PDF is searched.
 #include "sim/figure/figure.hpp"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,8 @@ namespace constrictor::cli {
 /// The folder of an agent below run_directory(): its socket, its lock, files, logs and output of the run.
 [[nodiscard]] std::filesystem::path agent_folder(const std::string& token);
 
-/// The folder in which the output of the agent with this folder is kept; empty: there is none.
+/// The folder in the user's state folder that keeps the output of a run whose agent has the folder `agent`; empty: the
+/// user has no state folder.
 [[nodiscard]] std::filesystem::path kept_output(const std::filesystem::path& agent);
 
 /// Removes the folders of agents that were killed; their processes were killed with them, by the kernel. A new folder

@@ -123,7 +123,7 @@ void Agent::clean_up() {
   std::error_code ignored;
   const fs::path kept = kept_output(folder_);
   if (!keep_ && !kept.empty()) fs::remove_all(kept, ignored);
-  // Under another name, so that nothing is removed of a folder that another agent makes meanwhile.
+  // The folder is renamed first: another agent may make a folder of the same name while this one is removed.
   const fs::path leaving = folder_.string() + ".ended";
   fs::remove_all(leaving, ignored);
   std::error_code error;
