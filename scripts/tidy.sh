@@ -22,7 +22,7 @@ else
   parts=("$PWD/(build/tidy/)?(components|sim|idl|tests|examples)/.*\.(cpp|cxx)$")
 fi
 cmake --preset tidy -DCONSTRICTOR_UNITY="$together" >/dev/null
-cmake --build build/tidy --target constrictor_messages
+cmake --build build/tidy --target generated_code
 # The static analyser follows our calls into Eigen and doubts values and memory that Eigen's templates handle. A finding
 # whose place is a line of Eigen is left out with its notes. clang-tidy shows it although the header is a system header,
 # because the notes name our files; NOLINT in our files has no effect on it.

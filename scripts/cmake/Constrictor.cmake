@@ -150,6 +150,9 @@ endfunction()
 # The target unit_tests builds what `ctest -L unit` runs, without the programs: for builds with sanitizers.
 add_custom_target(unit_tests)
 
+# The target generated_code makes all headers that an analysis of the sources needs.
+add_custom_target(generated_code)
+
 if(CONSTRICTOR_TESTS)
   add_library(constrictor_test_precompiled OBJECT ${CMAKE_CURRENT_LIST_DIR}/precompiled.cpp)
   target_link_libraries(constrictor_test_precompiled PRIVATE constrictor_options GTest::gtest)

@@ -20,6 +20,7 @@ int release_pages(dl_phdr_info* library, std::size_t, void*) {
   for (const auto& segment : segments) {
     if (segment.p_type != PT_DYNAMIC) continue;
     // A library with relocations in its code has pages that differ from its file.
+    // The loader gives addresses as numbers. NOLINTNEXTLINE(performance-no-int-to-ptr)
     const auto* entry = reinterpret_cast<const ElfW(Dyn)*>(library->dlpi_addr + segment.p_vaddr);
     for (; entry->d_tag != DT_NULL; ++entry)
       if (entry->d_tag == DT_TEXTREL) return 0;
@@ -29,7 +30,7 @@ int release_pages(dl_phdr_info* library, std::size_t, void*) {
     if (segment.p_type != PT_LOAD || (segment.p_flags & PF_W) != 0) continue;
     const std::uintptr_t begin = (library->dlpi_addr + segment.p_vaddr) / page * page;
     const std::uintptr_t end = (library->dlpi_addr + segment.p_vaddr + segment.p_memsz + page - 1) / page * page;
-    // A failure costs only memory.
+    // A failure costs only memory. NOLINTNEXTLINE(performance-no-int-to-ptr)
     (void)::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
   }
   return 0;

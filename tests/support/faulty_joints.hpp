@@ -39,8 +39,7 @@ class FaultyJoints {
       if (!std::isfinite(command.position_rad[i]) && !has("obeys_nan")) return;
       if (std::abs(command.position_rad[i]) > kLimit_rad + 1e-6 && !has("ignores_limit")) return;
     }
-    if (!stranger) number_ = number;
-    else if (silent) number_ = number;
+    if (!stranger || silent) number_ = number;
     session_ = has("obeys_stranger") && stranger && !silent ? session_ : session;
     heard_s_ = now_s;
     if (command.torque && has("no_torque_mode")) return;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 #include <functional>
+#include <iterator>
 
 #include "configuration/counted.hpp"
 #include "conform/part_restart.hpp"
@@ -209,6 +211,8 @@ void PerceptionConformance::check_refusals() {
 
 namespace {
 
+bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
 /// How the answers to the same images differ; empty: they do not.
 std::string difference(const std::vector<Seen>& first, const std::vector<Seen>& second) {
   for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
@@ -216,13 +220,13 @@ std::string difference(const std::vector<Seen>& first, const std::vector<Seen>& 
     if (a.lines.size() != b.lines.size() || a.objects.size() != b.objects.size())
       return fmt::format("another number of answers to image {}", i);
     for (std::size_t k = 0; k < a.lines.size(); ++k) {
-      if (std::memcmp(&a.lines[k].offset_m, &b.lines[k].offset_m, sizeof(double)) != 0 ||
-          std::memcmp(a.lines[k].y_m, b.lines[k].y_m, sizeof a.lines[k].y_m) != 0)
+      if (!same_bits(a.lines[k].offset_m, b.lines[k].offset_m) ||
+          !std::equal(std::begin(a.lines[k].y_m), std::end(a.lines[k].y_m), b.lines[k].y_m, same_bits))
         return fmt::format("another line in image {}", i);
     }
     for (std::size_t k = 0; k < a.objects.size(); ++k) {
       const auto &one = a.objects[k], &other = b.objects[k];
-      if (one.blob_count != other.blob_count || std::memcmp(&one.blobs[0].range_m, &other.blobs[0].range_m, 8) != 0)
+      if (one.blob_count != other.blob_count || !same_bits(one.blobs[0].range_m, other.blobs[0].range_m))
         return fmt::format("other objects in image {}", i);
     }
   }

@@ -155,7 +155,7 @@ TEST(Figure, TheKeyOfManyJointsStaysBesideTheHeading) {
     const cv::Mat row = figure(cv::Rect(from, 4 * (108 - 10) - 12, to - from, 1));
     std::set<std::array<int, 3>> colours;
     for (int x = 2; x < row.cols; ++x) {
-      const auto pixel = row.at<cv::Vec3b>(0, x);
+      const auto& pixel = row.at<cv::Vec3b>(0, x);
       const bool solid = pixel == row.at<cv::Vec3b>(0, x - 1) && pixel == row.at<cv::Vec3b>(0, x - 2);
       if (solid && pixel != cv::Vec3b(255, 255, 255)) colours.insert({pixel[0], pixel[1], pixel[2]});
     }

@@ -156,7 +156,8 @@ cv::Mat draw(const Scene& scene, const msg::CameraInfo& info, const Head& head, 
     for (int u = 0; u < image.cols; ++u) {
       Vector3d sum = Vector3d::Zero();
       for (int k = 0; k < kSub * kSub; ++k) {
-        const double pu = u + (k % kSub + 0.5) / kSub, pv = v + (k / kSub + 0.5) / kSub;
+        const int column = k % kSub, row = k / kSub;
+        const double pu = u + (column + 0.5) / kSub, pv = v + (row + 0.5) / kSub;
         sum += trace(scene, eye, R_GC * Vector3d((pu - info.cx) / info.fx, (pv - info.cy) / info.fy, 1.0));
       }
       sum /= kSub * kSub;

@@ -34,16 +34,16 @@ Node of_kind(Kind kind, Node element = nullptr, std::vector<std::uint32_t> bound
   node.bounds = std::move(bounds);
   return std::make_shared<TypeNode>(node);
 }
-TypeNode structure(std::vector<std::pair<std::string, Node>> members,
+TypeNode structure(const std::vector<std::pair<std::string, Node>>& members,
                    TypeNode::Extensibility extensibility = TypeNode::Extensibility::kFinal) {
   TypeNode node;
   node.kind = Kind::kStruct;
   node.extensibility = extensibility;
-  for (auto& [name, type] : members) {
+  for (const auto& [name, type] : members) {
     TypeNode::Member member;
     member.name = name;
     member.id = static_cast<std::uint32_t>(node.members.size());
-    member.type = std::move(type);
+    member.type = type;
     node.members.push_back(member);
   }
   return node;
