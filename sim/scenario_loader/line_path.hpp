@@ -20,8 +20,6 @@ struct LinePath {
   std::vector<Eigen::Vector2d> points_m;  ///< in W, at most `most_points`
 };
 
-inline constexpr std::size_t kMostLinePoints = 512;  ///< size of the arrays in SceneDescription (simulation.idl)
-
 /// Joins the segments with continuous heading. The points are 0.02 m apart, or further on long lines.
 [[nodiscard]] LinePath make_line_path(const PlanarPose& begin, const std::vector<LineSegment>& segments,
                                       std::size_t most_points);

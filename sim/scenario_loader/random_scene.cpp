@@ -91,7 +91,7 @@ bool line_meets_itself(const std::vector<Vector2d>& line_m) {
 Scenario draw_scene(const RandomScene& ranges, const Mission& mission, Scenario scene, Random& random) {
   scene.line_begin = {{kStart_m, 0.0}, 0.0};
   scene.line_segments = draw_line(ranges, random);
-  const LinePath path = make_line_path(scene.line_begin, scene.line_segments, kMostLinePoints);
+  const LinePath path = make_line_path(scene.line_begin, scene.line_segments, msg::kMaxLinePoints);
   scene.line_m = path.points_m;
   scene.line_colour = mission.line_colour;
   scene.start_m = {0.0, 0.0};

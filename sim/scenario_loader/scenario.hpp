@@ -12,7 +12,12 @@
 
 namespace constrictor {
 
-enum class BodyShape : std::uint8_t { kCylinder = 0, kBox = 1 };  // numbers of simulation.idl
+/// Of a scenario without a line, which may have a mission: blue. This header does without the messages, because the
+/// engine includes it; scenario_draft.cpp compares the number with msg::kColourBlue.
+inline constexpr std::uint8_t kUsualLineColour = 3;
+
+/// msg::kShape…; sim/physics/scene_description.cpp compares the numbers.
+enum class BodyShape : std::uint8_t { kCylinder = 0, kBox = 1 };
 
 /// An object that the robot can grasp. It starts upright on the ground.
 struct ScenarioObject {
@@ -87,7 +92,7 @@ struct Scenario {
   std::vector<LineSegment> line_segments;  ///< of which the line is made, from the zones to the objects; empty: no line
   std::vector<Eigen::Vector2d> line_m;     ///< its points
   double line_width_m = 0.05;
-  std::uint8_t line_colour = 3;  ///< msg::kColourBlue
+  std::uint8_t line_colour = kUsualLineColour;  ///< msg::kColour…
   std::vector<ScenarioObject> objects;
   std::vector<ScenarioZone> zones;
   std::vector<ScenarioObstacle> obstacles;

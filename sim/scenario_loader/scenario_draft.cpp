@@ -16,13 +16,10 @@ namespace constrictor {
 namespace {
 
 constexpr double kFar_m = 50.0;  // greatest distance from the origin
-// Sizes of the arrays in SceneDescription (simulation.idl).
-constexpr std::size_t kMostObjects = 16;
-constexpr std::size_t kMostZones = 8;
-constexpr std::size_t kMostObstacles = 64;
 constexpr std::size_t kMostSegments = 64;
 constexpr std::size_t kMostRandomObjects = 3;  // one behind the other, beyond the end of the line
 constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
+static_assert(kUsualLineColour == msg::kColourBlue);
 
 const std::vector<std::string>& colours() {
   static const std::vector<std::string> names = names_of(constants::kColour, msg::kColourGreen);
@@ -107,9 +104,9 @@ void read_bodies(Configuration& root, bool has_line, ScenarioDraft& draft) {
   const auto limit = [&](const char* key, std::size_t found, std::size_t most) {
     if (found > most) throw root.error(key, fmt::format("found a list of {}, accepted a list of 0 to {}", found, most));
   };
-  limit("objects", draft.objects.size(), kMostObjects);
-  limit("zones", draft.zones.size(), kMostZones);
-  limit("obstacles", draft.obstacles.size(), kMostObstacles);
+  limit("objects", draft.objects.size(), msg::kMaxSceneObjects);
+  limit("zones", draft.zones.size(), msg::kMaxZones);
+  limit("obstacles", draft.obstacles.size(), msg::kMaxObstacles);
 }
 
 /// Checks that the mission can be carried out in this scene. This check is the only use of the mission here: the

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "component/random.hpp"
+#include "constrictor/messages.hpp"
 #include "sim/scenario_loader/layout_check.hpp"
 #include "sim/scenario_loader/scenario_draft.hpp"
 
@@ -38,7 +39,7 @@ Scenario draw_scene(const ScenarioDraft& draft, const Variation& vary, std::uint
     segment.curvature_1_m *= line_side * line.factor(vary.line_curvature);
     segment.length_m *= line.factor(vary.line_length);
   }
-  const LinePath path = make_line_path(scene.line_begin, scene.line_segments, kMostLinePoints);
+  const LinePath path = make_line_path(scene.line_begin, scene.line_segments, msg::kMaxLinePoints);
   scene.line_m = path.points_m;
   const auto resolve = [&](const Placement& placement, const Eigen::Vector2d& position_m) {
     const PlanarPose frame = placement.frame == "line_begin" ? path.begin

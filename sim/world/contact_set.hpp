@@ -13,7 +13,8 @@
 
 namespace constrictor {
 
-enum class Touched : std::uint8_t { kGround = 0, kSelf = 1, kObject = 2, kObstacle = 3 };  // numbers of simulation.idl
+/// msg::kTouched…; sim/physics/sensors.cpp compares the numbers.
+enum class Touched : std::uint8_t { kGround = 0, kSelf = 1, kObject = 2, kObstacle = 3 };
 
 /// A contact that a module feels. Vectors are in the module's frame; the force is the mean over the last advance().
 struct ModuleContact {

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include "configuration/configuration.hpp"
+#include "constrictor/messages.hpp"
 #include "robot/camera_view.hpp"
 #include "robot/further_cameras.hpp"
 
 namespace constrictor {
 namespace {
 
-// The arrays in messages have room for this many modules (kMaxModules in common.idl).
-constexpr std::int64_t kMostModules = 64;
 // The wave of 8 modules of `mamba`, with 4 yaw joints, does not move them; 10 follow a line. A grasp needs a longer
 // body, which navigation checks.
 constexpr std::size_t kFewestYawJoints = 5;
@@ -76,7 +75,7 @@ RobotModel load_robot(const std::filesystem::path& file) {
   robot.name = root.text("name");
 
   Configuration module = root.section("module");
-  robot.module_count = static_cast<std::size_t>(module.integer("count", 2, kMostModules));
+  robot.module_count = static_cast<std::size_t>(module.integer("count", 2, msg::kMaxModules));
   robot.module_length_m = module.number("length_m", {0.02, 1.0});
   robot.module_radius_m = module.number("radius_m", {0.005, 0.5});
   robot.module_belly_half_width_m = module.number("belly_half_width_m", {0.0, robot.module_radius_m});

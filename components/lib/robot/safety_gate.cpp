@@ -7,12 +7,11 @@
 #include <string_view>
 #include <utility>
 
+#include "constrictor/messages.hpp"
+
 namespace constrictor {
 namespace {
 
-constexpr std::uint8_t kFollow = 0;   // kServoFollow
-constexpr std::uint8_t kRelaxed = 1;  // kServoRelaxed
-constexpr std::uint8_t kTorque = 2;   // kServoTorque
 constexpr double kRounding_rad = 1e-9;
 
 bool finite(std::span<const double> values) {
@@ -23,7 +22,8 @@ double finite_or(double value, double otherwise) { return std::isfinite(value) ?
 
 JointSetpoint setpoint_of(const GateCommand& command, std::size_t joint) {
   const double limit_nm = command.torque_limit_nm[joint];
-  if (command.mode == kTorque) return {command.position_rad[joint], 0.0, limit_nm, command.torque_nm[joint], true};
+  if (command.mode == msg::kServoTorque)
+    return {command.position_rad[joint], 0.0, limit_nm, command.torque_nm[joint], true};
   return {command.position_rad[joint], command.velocity_rad_s[joint], limit_nm};
 }
 
@@ -57,8 +57,9 @@ GateRefusal SafetyGate::judge(const GateCommand& command, const GateInstant& now
   if (command.run_id != now.run_id || command.epoch != now.epoch) return GateRefusal::kWrongEpoch;
   if (command.tick > now.tick) return GateRefusal::kFromFuture;
   if (now.tick - command.tick > limits_.stale_after_ticks) return GateRefusal::kStale;
-  const bool torque = command.mode == kTorque;
-  if (command.mode != kFollow && command.mode != kRelaxed && !torque) return GateRefusal::kUnknownMode;
+  const bool torque = command.mode == msg::kServoTorque;
+  if (command.mode != msg::kServoFollow && command.mode != msg::kServoRelaxed && !torque)
+    return GateRefusal::kUnknownMode;
   if (torque && !limits_.torque_mode) return GateRefusal::kNoTorqueMode;
   const std::size_t count = joints_.size();
   if (command.position_rad.size() != count || command.velocity_rad_s.size() != count ||
@@ -87,8 +88,8 @@ GateRefusal SafetyGate::offer(const GateCommand& command, const GateInstant& now
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     state.offered[i] = clamp_to_limits(joints_[i], setpoint_of(command, i));
   }
-  state.relax = command.mode == kRelaxed;
-  state.torque = command.mode == kTorque;
+  state.relax = command.mode == msg::kServoRelaxed;
+  state.torque = command.mode == msg::kServoTorque;
   state.accepted = true;
   return GateRefusal::kNone;
 }

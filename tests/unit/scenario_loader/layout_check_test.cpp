@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "constrictor/messages.hpp"
 #include "sim/scenario_loader/line_path.hpp"
 
 namespace constrictor {
@@ -87,7 +88,8 @@ TEST(LayoutCheck, ALineThatTurnsBackIsFound) {
     const double angle_rad = degrees * std::numbers::pi / 180.0;
     Scenario scenario;
     scenario.line_m =
-        make_line_path({}, {{2.0, 0.0}, {radius_m * angle_rad, 1.0 / radius_m}, {2.0, 0.0}}, kMostLinePoints).points_m;
+        make_line_path({}, {{2.0, 0.0}, {radius_m * angle_rad, 1.0 / radius_m}, {2.0, 0.0}}, msg::kMaxLinePoints)
+            .points_m;
     const std::vector<std::string> texts = find_turns_back(scenario);
     if (texts.empty()) return "accepted";
     return texts[0].find("beside itself") != std::string::npos ? "beside itself" : "sharp";
