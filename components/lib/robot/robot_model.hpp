@@ -10,19 +10,21 @@
 
 namespace constrictor {
 
+// A value that every robot file must state has no default here: it is 0 until load_robot() has set it.
+
 enum class JointAxis { kYaw, kPitch };
 
 /// One joint, between module i (head side) and module i + 1 (tail side).
 struct JointModel {
   JointAxis axis = JointAxis::kYaw;
-  double min_rad = -1.57;
-  double max_rad = 1.57;
-  double max_speed_rad_s = 4.0;
-  double max_torque_nm = 6.0;
+  double min_rad = 0.0;
+  double max_rad = 0.0;
+  double max_speed_rad_s = 0.0;
+  double max_torque_nm = 0.0;
   // The servo: sim/world/servo.hpp has its equations. All values hold at the output of the gear.
-  double position_gain_nm_rad = 300.0;  ///< torque for an error of the angle
-  double velocity_gain_nm_s_rad = 4.0;  ///< torque for an error of the rate
-  double rotor_inertia_kg_m2 = 0.01;    ///< of motor and gear
+  double position_gain_nm_rad = 0.0;    ///< torque for an error of the angle
+  double velocity_gain_nm_s_rad = 0.0;  ///< torque for an error of the rate
+  double rotor_inertia_kg_m2 = 0.0;     ///< of motor and gear
   double gear_friction_nm = 0.0;        ///< resists the motion of the joint
   double no_load_speed_rad_s = 0.0;     ///< at which the motor has no torque left; 0: the torque does not fall
   double stiffness_nm_rad = 0.0;        ///< stiffness of the series elastic element; 0: the joint has none and is rigid
@@ -40,14 +42,14 @@ struct JointModel {
 struct CameraModel {
   std::string name;        ///< of a further camera
   std::size_t module = 0;  ///< that carries the camera; 0: the head
-  int width = 320;
-  int height = 240;
-  double horizontal_fov_rad = 1.57;
-  Eigen::Vector3d p_HC{0.03, 0.0, 0.05};  ///< [m] optical centre C in the frame of the module; H is the head's frame
-  double yaw_rad = 0.0;                   ///< rotation of the optical axis about z, positive left; the head's: 0
-  double tilt_rad = 0.3;                  ///< rotation of the optical axis downwards
-  int period_ticks = 5;                   ///< ticks between two images; all cameras expose at the same ticks
-  int latency_ticks = 2;                  ///< ticks from exposure until the image is visible to its readers
+  int width = 0;
+  int height = 0;
+  double horizontal_fov_rad = 0.0;
+  Eigen::Vector3d p_HC{0.0, 0.0, 0.0};  ///< [m] optical centre C in the frame of the module; H is the head's frame
+  double yaw_rad = 0.0;                 ///< rotation of the optical axis about z, positive left; the head's: 0
+  double tilt_rad = 0.0;                ///< rotation of the optical axis downwards
+  int period_ticks = 0;                 ///< ticks between two images; all cameras expose at the same ticks
+  int latency_ticks = 0;                ///< ticks from exposure until the image is visible to its readers
 
   /// [pixel] focal length.
   [[nodiscard]] double focal_pixels() const { return 0.5 * width / std::tan(0.5 * horizontal_fov_rad); }
@@ -61,9 +63,9 @@ struct RobotModel {
   double module_belly_half_width_m = 0.0;  ///< of the flat underside that keeps a module from rolling; 0: round modules
   double module_mass_kg = 0.0;
   std::vector<JointModel> joints;            ///< module_count - 1 joints, from head to tail
-  double friction_along = 0.05;              ///< Coulomb friction coefficient of the skin along the module's axis
-  double friction_across = 0.5;              ///< Coulomb friction coefficient of the skin across the module's axis
-  double torque_filter_s = 0.15;             ///< time constant of the low-pass filter of the measured joint torque
+  double friction_along = 0.0;               ///< Coulomb friction coefficient of the skin along the module's axis
+  double friction_across = 0.0;              ///< Coulomb friction coefficient of the skin across the module's axis
+  double torque_filter_s = 0.0;              ///< time constant of the low-pass filter of the measured joint torque
   CameraModel camera;                        ///< of the head; its number is 0
   std::vector<CameraModel> further_cameras;  ///< their numbers count from 1
   // Standard deviations of the sensor noise; 0: no noise.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "support/usual_joint.hpp"
+
 namespace constrictor {
 namespace {
 
@@ -18,7 +20,10 @@ class PerturbationScriptTest : public ::testing::Test {
     robot_.module_length_m = 0.1;
     robot_.module_radius_m = 0.035;
     robot_.module_mass_kg = 0.3;
-    robot_.joints.resize(1);
+    robot_.joints = {testing::usual_joint()};
+    robot_.friction_along = 0.05;
+    robot_.friction_across = 0.5;
+    robot_.torque_filter_s = 0.15;
     ScenarioObject object;
     object.mass_kg = 0.5;
     object.position_m = {3.0, 0.0};

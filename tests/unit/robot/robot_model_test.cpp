@@ -11,6 +11,7 @@
 #include "robot/joint_limits.hpp"
 #include "robot/u_arms.hpp"
 #include "support/project.hpp"
+#include "support/usual_joint.hpp"
 
 namespace constrictor {
 namespace {
@@ -143,7 +144,7 @@ TEST(RobotModel, EveryShippedRobotIsAccepted) {
 }
 
 TEST(JointLimits, RejectUnacceptableSetpoints) {
-  const JointModel joint;
+  const JointModel joint = testing::usual_joint();
   EXPECT_TRUE(is_acceptable(joint, {0.5, 100.0, 100.0}));
   EXPECT_FALSE(is_acceptable(joint, {2.0, 0.0, 1.0}));
   EXPECT_FALSE(is_acceptable(joint, {0.0, 0.0, -1.0}));

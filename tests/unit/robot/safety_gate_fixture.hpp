@@ -8,20 +8,21 @@
 #include <vector>
 
 #include "robot/safety_gate.hpp"
+#include "support/usual_joint.hpp"
 
 namespace constrictor {
 
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kDt_s = 0.02;
-inline constexpr double kFastest_rad = 4.0 * kDt_s;  // greatest step of the default joint in a tick
+inline constexpr double kFastest_rad = 4.0 * kDt_s;  // greatest step of the usual joint in a tick
 
 class SafetyGateTest : public ::testing::Test {
  protected:
   static RobotModel two_joints() {
     RobotModel robot;
     robot.module_count = 3;
-    robot.joints.resize(2);
+    robot.joints.assign(2, testing::usual_joint());
     return robot;
   }
   /// A command that came `age` ticks after it was written.

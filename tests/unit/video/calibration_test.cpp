@@ -14,6 +14,9 @@ using testing::TemporaryFolder;
 
 CameraModel robots_camera() {
   CameraModel camera;
+  camera.width = 320;
+  camera.height = 240;
+  camera.p_HC = {0.03, 0.0, 0.05};
   camera.tilt_rad = 0.3;
   camera.horizontal_fov_rad = 1.2;
   return camera;

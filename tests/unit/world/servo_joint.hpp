@@ -5,6 +5,7 @@
 
 #include "sim/world/servo.hpp"
 #include "sim/world/solver_settings.hpp"
+#include "support/usual_joint.hpp"
 
 namespace constrictor {
 
@@ -48,7 +49,7 @@ struct Joint {
 };
 
 inline JointModel model() {
-  JointModel model;
+  JointModel model = testing::usual_joint();
   model.max_torque_nm = 100.0;
   model.max_speed_rad_s = 50.0;
   return model;

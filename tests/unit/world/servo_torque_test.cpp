@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "support/usual_joint.hpp"
 #include "unit/world/servo_joint.hpp"
 #include "unit/world/world_fixture.hpp"
 
@@ -11,14 +12,8 @@ namespace {
 
 JointSetpoint torque(double torque_nm, double limit_nm = 6.0) { return {0.0, 0.0, limit_nm, torque_nm, true}; }
 
-JointModel torque_model() {
-  JointModel joint;  // the default limits: 1.57 rad, 4 rad/s, 6 Nm
-  joint.rotor_inertia_kg_m2 = 0.01;
-  return joint;
-}
-
 TEST(ServoTorque, AcceleratesJointAndRotor) {
-  Joint joint(torque_model(), 0.04);
+  Joint joint(testing::usual_joint(), 0.04);
   for (int i = 0; i < 10; ++i) joint.tick(torque(-0.3));
   const double time_s = 10 * kTick_s;
   EXPECT_NEAR(joint.rate_rad_s, -0.3 / 0.05 * time_s, 1e-9);
@@ -27,7 +22,7 @@ TEST(ServoTorque, AcceleratesJointAndRotor) {
 }
 
 TEST(ServoTorque, ALoadAndItsOppositeTorqueBalance) {
-  Joint joint(torque_model(), 0.02);
+  Joint joint(testing::usual_joint(), 0.02);
   joint.load_nm = 2.5;
   for (int i = 0; i < 50; ++i) joint.tick(torque(-2.5));
   EXPECT_NEAR(joint.angle_rad, 0.0, 1e-9);
@@ -35,14 +30,14 @@ TEST(ServoTorque, ALoadAndItsOppositeTorqueBalance) {
 }
 
 TEST(ServoTorque, ExertsAtMostTheLimitOfTheCommand) {
-  Joint joint(torque_model(), 0.04);
+  Joint joint(testing::usual_joint(), 0.04);
   for (int i = 0; i < 5; ++i) joint.tick(torque(5.0, 0.3));
   EXPECT_NEAR(joint.rate_rad_s, 0.3 / 0.05 * 5 * kTick_s, 1e-9);
 }
 
 TEST(ServoTorque, NeverDrivesTheJointBeyondItsMaximumSpeed) {
   for (const double rotor : {0.0, 0.001, 0.01}) {
-    JointModel model = torque_model();
+    JointModel model = testing::usual_joint();
     model.rotor_inertia_kg_m2 = rotor;
     model.max_rad = 1e9;
     Joint joint(model, 0.05);
@@ -59,7 +54,7 @@ TEST(ServoTorque, NeverDrivesTheJointBeyondItsMaximumSpeed) {
 
 TEST(ServoTorque, TheJointComesToRestAtItsLimitAndLeavesItAgain) {
   for (const double push_nm : {0.2, 1.5, 6.0}) {
-    Joint joint(torque_model(), 0.02);
+    Joint joint(testing::usual_joint(), 0.02);
     double furthest = 0.0;
     for (int i = 0; i < 150; ++i) {
       joint.tick(torque(push_nm));
@@ -75,7 +70,7 @@ TEST(ServoTorque, TheJointComesToRestAtItsLimitAndLeavesItAgain) {
 
 TEST(ServoTorque, AMotorLosesTorqueWithSpeed) {
   // (I + J) w' = T (1 - w / w0) has the solution w = w0 (1 - exp(-t T / (w0 (I + J)))).
-  JointModel weak = torque_model();
+  JointModel weak = testing::usual_joint();
   weak.max_torque_nm = 2.0;
   weak.no_load_speed_rad_s = 3.0;
   weak.max_rad = 1e9;
@@ -86,7 +81,7 @@ TEST(ServoTorque, AMotorLosesTorqueWithSpeed) {
 }
 
 TEST(ServoTorque, TheFrictionOfTheGearIsOvercomeAndThenSubtracted) {
-  JointModel rough = torque_model();
+  JointModel rough = testing::usual_joint();
   rough.gear_friction_nm = 0.5;
   Joint stuck(rough, 0.04);
   for (int i = 0; i < 50; ++i) stuck.tick(torque(0.45));
@@ -99,7 +94,7 @@ TEST(ServoTorque, TheFrictionOfTheGearIsOvercomeAndThenSubtracted) {
 }
 
 TEST(ServoTorque, ASeriesSpringPassesTheTorqueOn) {
-  JointModel elastic = torque_model();
+  JointModel elastic = testing::usual_joint();
   elastic.stiffness_nm_rad = 60.0;
   elastic.damping_nm_s_rad = 0.5;
   Joint joint(elastic, 0.04);
@@ -110,7 +105,7 @@ TEST(ServoTorque, ASeriesSpringPassesTheTorqueOn) {
 }
 
 TEST(ServoTorque, PositionControlBeginsWhereTheTorqueHasMovedTheJoint) {
-  Joint joint(torque_model(), 0.04);
+  Joint joint(testing::usual_joint(), 0.04);
   for (int i = 0; i < 20; ++i) joint.tick(torque(0.2));
   const double begin_rad = joint.angle_rad, rate = joint.rate_rad_s;
   joint.tick({begin_rad, 0.0, 6.0});
