@@ -29,8 +29,8 @@ constexpr double kTick_s = 0.02;  // in which the robot file counts the camera's
 constexpr auto kLongestWait = std::chrono::milliseconds(20);
 
 struct Options {
-  fs::path robot = data_path("components/lib/robot/mamba.yaml");
-  fs::path scenario = data_path("sim/scenarios/case_study.yaml");
+  fs::path robot = default_robot_file();
+  fs::path scenario = default_scenario_file();
   fs::path output = ".";
   fs::path world;
   std::optional<std::uint32_t> run;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "component/data_path.hpp"
+#include "component/default_robot.hpp"
 #include "constrictor/archive.hpp"
 #include "sim/physics/scene_description.hpp"
 #include "sim/scenario_loader/layout_check.hpp"
@@ -15,20 +16,16 @@
 namespace constrictor {
 namespace {
 
-std::filesystem::path or_default(const std::filesystem::path& file, const char* fallback) {
-  return file.empty() ? data_path(fallback) : file;
-}
-
 Scenario scene_of(const Setup& setup, const RobotModel& robot) {
-  return load_scenario(or_default(setup.scenario_file, "sim/scenarios/case_study.yaml"), setup.seed,
-                       static_cast<double>(robot.module_count) * robot.module_length_m, robot.module_radius_m);
+  const std::filesystem::path file = setup.scenario_file.empty() ? default_scenario_file() : setup.scenario_file;
+  return load_scenario(file, setup.seed, static_cast<double>(robot.module_count) * robot.module_length_m,
+                       robot.module_radius_m);
 }
 
 }  // namespace
 
 Physics::Physics(Wiring& wiring, const Setup& setup)
-    : Physics(wiring, setup, load_parameters<PhysicsConfig>(setup.config_file),
-              load_robot(or_default(setup.robot_file, "components/lib/robot/mamba.yaml"))) {}
+    : Physics(wiring, setup, load_parameters<PhysicsConfig>(setup.config_file), load_robot(robot_file_of(setup))) {}
 
 Physics::Physics(Wiring& wiring, const Setup& setup, const PhysicsConfig& config, const RobotModel& robot)
     : Physics(wiring, setup, config, robot, scene_of(setup, robot)) {}

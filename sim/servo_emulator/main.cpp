@@ -30,8 +30,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int kPriority = 10;  // above all usual processes, below interrupts
 
 struct Options {
-  fs::path robot = data_path("components/lib/robot/mamba.yaml");
-  fs::path scenario = data_path("sim/scenarios/case_study.yaml");
+  fs::path robot = default_robot_file();
+  fs::path scenario = default_scenario_file();
   fs::path bus = data_path("deploy/buses/mamba_emulated.yaml");
   fs::path output = ".";
   std::uint64_t seed = 1;

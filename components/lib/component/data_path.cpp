@@ -33,6 +33,10 @@ fs::path data_path(const fs::path& relative) {
   return fs::path(CONSTRICTOR_SOURCE_DIR) / relative;
 }
 
+fs::path default_robot_file() { return data_path("components/lib/robot/mamba.yaml"); }
+
+fs::path default_scenario_file() { return data_path("sim/scenarios/case_study.yaml"); }
+
 std::vector<std::string> data_names(const fs::path& relative) {
   std::set<std::string> names;
   std::error_code no_folder;

@@ -17,6 +17,10 @@ namespace constrictor {
 /// tree if none has it.
 [[nodiscard]] std::filesystem::path data_path(const std::filesystem::path& relative);
 
+/// The robot and the scenario of a process that is started without naming one.
+[[nodiscard]] std::filesystem::path default_robot_file();
+[[nodiscard]] std::filesystem::path default_scenario_file();
+
 /// The names, without ".yaml", of the YAML files in this folder of the data_folders(), sorted.
 [[nodiscard]] std::vector<std::string> data_names(const std::filesystem::path& relative);
 

@@ -1,4 +1,5 @@
-// The robot of a component that drives a device: such components also run without a launcher, which names the robot.
+// The robot of a plant or of another driver of a device: such components also run without a launcher, which names the
+// robot.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +9,9 @@
 
 namespace constrictor {
 
-/// The robot file of `setup`; that of the robot `mamba` if it names none.
+/// The robot file of `setup`; the default one if it names none.
 [[nodiscard]] inline std::filesystem::path robot_file_of(const Setup& setup) {
-  return setup.robot_file.empty() ? data_path("components/lib/robot/mamba.yaml") : setup.robot_file;
+  return setup.robot_file.empty() ? default_robot_file() : setup.robot_file;
 }
 
 }  // namespace constrictor

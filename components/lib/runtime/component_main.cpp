@@ -124,8 +124,8 @@ int host_main(int argc, char** argv, std::vector<ComponentFactory> factories, Sc
   std::vector<std::string> config_files;
   std::vector<std::string> latencies;
   std::string token_file;
-  options.setup.robot_file = data_path("components/lib/robot/mamba.yaml");
-  options.setup.scenario_file = data_path("sim/scenarios/case_study.yaml");
+  options.setup.robot_file = default_robot_file();
+  options.setup.scenario_file = default_scenario_file();
 
   CLI::App app{"Constrictor component " + names + ": takes part in a run on Cyclone DDS."};
   app.set_version_flag("--version", [&names] { return version_text(names, own_git_revision()); });

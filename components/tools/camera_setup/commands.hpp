@@ -29,7 +29,7 @@ struct Options {
   double square_m = 0.025;
   std::filesystem::path out;
   std::string calibration;
-  std::filesystem::path robot = data_path("components/lib/robot/mamba.yaml");
+  std::filesystem::path robot = default_robot_file();
   std::size_t views = 20;  ///< of the board that are collected from a live source
   double largest_error_px = 1.0;
   std::vector<double> at_m;

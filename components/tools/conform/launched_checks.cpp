@@ -32,7 +32,7 @@ LaunchedChecks launched_checks(int argc, char** argv) {
   launched.argc = argc - named;
   launched.argv = argv + named;
   launched.robot = value_of(argc, argv, "--robot");
-  if (launched.robot.empty()) launched.robot = data_path("components/lib/robot/mamba.yaml");
+  if (launched.robot.empty()) launched.robot = default_robot_file();
   launched.mission = value_of(argc, argv, "--mission");
   const std::string domain = value_of(argc, argv, "--domain");
   const bool only_asked = std::any_of(

@@ -119,7 +119,7 @@ class StoryReader {
 
   void complete(const std::string& library) {
     const TemporaryFolder folder("replay");
-    fs::path robot_file = data_path("components/lib/robot/mamba.yaml");  // of a recording without its robot
+    fs::path robot_file = default_robot_file();  // of a recording without its robot
     if (!robot_.empty()) {
       robot_file = folder.path() / "robot.yaml";
       std::ofstream(robot_file, std::ios::binary) << robot_;

@@ -47,7 +47,7 @@ std::string robot_of(const RunNote& run) {
       nlohmann::json::parse(std::ifstream(run.report_dir / "run.json"), nullptr, /*allow_exceptions=*/false);
   const auto robot = record.find("robot");
   if (run.on_this_host && robot != record.end() && robot->is_string()) return robot->get<std::string>();
-  return data_path("components/lib/robot/mamba.yaml");
+  return default_robot_file();
 }
 
 int bridge_run(std::optional<std::uint32_t> domain, ros_bridge::BridgeOptions options, std::string robot) {
