@@ -62,9 +62,9 @@ void Guidance::dead_reckon(const Tick& tick, const guidance::BodyChain& chain, b
       input.push_n += turned({contact.force_n.x, contact.force_n.y}, chain[contact.module_index].yaw_rad);
     }
   }
-  if (config_.slope_time_s > 0.0 && imu) {
-    state_.slope.learn(q, input.dt_s / config_.slope_time_s);
-    input.downhill = turned(state_.slope.downhill(config_.level_rad), -input.yaw_rad);
+  if (config_.ground.slope_time_s > 0.0 && imu) {
+    state_.slope.learn(q, input.dt_s / config_.ground.slope_time_s);
+    input.downhill = turned(state_.slope.downhill(config_.ground.level_rad), -input.yaw_rad);
   } else {
     state_.slope = {};
   }

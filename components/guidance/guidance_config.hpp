@@ -4,6 +4,7 @@
 #include "component/mission.hpp"
 #include "configuration/parameter_set.hpp"
 #include "guidance/odometry.hpp"
+#include "robot/ground_slope_config.hpp"
 
 namespace constrictor::guidance {
 
@@ -79,10 +80,7 @@ struct GuidanceConfig : ParameterSet {
   double speed_window_s = add(speed_window_s, "odometry.speed_window_s", 1.5, "s", {0.1, 2.0}, kWhileRunning,
                               "Time over which the published speed is averaged; about a gait period");
 
-  double slope_time_s = add(slope_time_s, "ground.slope_time_s", 4.0, "s", {0.0, 600.0}, kWhileRunning,
-                            "Time constant of the mean that finds the slope; 0: the ground is level");
-  double level_rad = add(level_rad, "ground.level_rad", 0.015, "rad", {0.0, 0.3}, kWhileRunning,
-                         "Ground that is inclined by less than this counts as level");
+  GroundSlopeConfig ground = add_section(ground, "ground");
 
   double bearing_sd_rad = add(bearing_sd_rad, "landmarks.bearing_sd_rad", 0.02, "rad", {1e-3, 1.0}, kWhileRunning,
                               "Standard deviation of a percept's bearing");
@@ -98,10 +96,11 @@ struct GuidanceConfig : ParameterSet {
                     "Squared Mahalanobis distance up to which a percept belongs to a landmark");
   double merge_m = add(merge_m, "landmarks.merge_m", 0.5, "m", {0.0, 5.0}, kWhileRunning,
                        "A percept outside of the gate but nearer than this shows a landmark that has moved");
-  double object_radius_m = add(object_radius_m, "landmarks.object_radius_m", 0.085, "m", kObjectRadiusBounds_m,
-                               kAtStart, "Radius of an object until an image shows its whole width");
-  double zone_radius_m = add(zone_radius_m, "landmarks.zone_radius_m", 0.3, "m", kZoneRadiusBounds_m, kAtStart,
-                             "Radius of a zone until an image shows its whole width");
+  double object_radius_m =
+      add(object_radius_m, "landmarks.object_radius_m", kUsualObjectRadius_m, "m", kObjectRadiusBounds_m, kAtStart,
+          "Radius of an object until an image shows its whole width");
+  double zone_radius_m = add(zone_radius_m, "landmarks.zone_radius_m", kUsualZoneRadius_m, "m", kZoneRadiusBounds_m,
+                             kAtStart, "Radius of a zone until an image shows its whole width");
   int confirm = add(confirm, "landmarks.confirm", 3, "", {1, 100}, kWhileRunning,
                     "Number of percepts until a new landmark, or its new place, is believed");
 

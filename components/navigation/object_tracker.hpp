@@ -33,13 +33,13 @@ struct Sighting : Visibility {
 
 struct ObjectTrackerConfig : DebounceConfig {
   ObjectTrackerConfig() : DebounceConfig("An object", 15) {}
-  double object_radius_m = add(object_radius_m, "object_radius_m", 0.085, "m", kObjectRadiusBounds_m, kAtStart,
-                               "Radius of an object until an image shows its whole width");
+  double object_radius_m = add(object_radius_m, "object_radius_m", kUsualObjectRadius_m, "m", kObjectRadiusBounds_m,
+                               kAtStart, "Radius of an object until an image shows its whole width");
   double min_radius_m =
       add(min_radius_m, "min_radius_m", 0.03, "m", {0.0, 10.0}, kAtStart, "Smallest radius of an object");
-  double max_radius_m =
-      add(max_radius_m, "max_radius_m", 0.2, "m", {0.0, 10.0}, kAtStart, "Largest radius of an object");
-  double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", kZoneRadiusBounds_m, kAtStart,
+  double max_radius_m = add(max_radius_m, "max_radius_m", kLargestObjectRadius_m, "m", {0.0, 10.0}, kAtStart,
+                            "Largest radius of an object");
+  double zone_radius_m = add(zone_radius_m, "zone_radius_m", kUsualZoneRadius_m, "m", kZoneRadiusBounds_m, kAtStart,
                              "Radius of a zone until an image shows its whole width");
 };
 

@@ -88,7 +88,7 @@ void Perception::remember_body(const Tick& tick) {
     const auto& q = imu_->orientation;
     state_.attitudes.push_back({imu_->header.tick, q.w, q.x, q.y, q.z});
     if (state_.attitudes.size() > kAttitudes) state_.attitudes.pop_front();
-    if (config_.slope_time_s > 0.0) state_.slope.learn(q, tick.period_s() / config_.slope_time_s);
+    if (config_.ground.slope_time_s > 0.0) state_.slope.learn(q, tick.period_s() / config_.ground.slope_time_s);
     else state_.slope = {};
   }
   if (joints_ && joints_.fresh()) {
@@ -167,7 +167,7 @@ void Perception::look_further(const Tick& tick) {
     FurtherCamera& from = state_.further[image.camera - 1U];
     if (from.info.width == 0 || !accepted(image, from.info, "camera/further/image", from.repeats)) continue;
     const msg::Quaternion attitude =
-        state_.slope.relative_to_ground(attitude_at(image.exposure_tick), config_.level_rad);
+        state_.slope.relative_to_ground(attitude_at(image.exposure_tick), config_.ground.level_rad);
     const auto view = perception::further_view(from.info, robot_, attitude, angles_at(image.exposure_tick));
     look(tick, image, view.camera, view.X_GV, from.turn, further_->percepts);
   }
@@ -180,7 +180,7 @@ void Perception::step(const Tick& tick) {
   if (task_ && task_->parameters.line_colour != msg::kColourUnknown) state_.line_colour = task_->parameters.line_colour;
   if (image_ && image_.fresh() && info_ && accepted(*image_, *info_, "camera/image", state_.repeats)) {
     const msg::Quaternion attitude =
-        state_.slope.relative_to_ground(attitude_at(image_->exposure_tick), config_.level_rad);
+        state_.slope.relative_to_ground(attitude_at(image_->exposure_tick), config_.ground.level_rad);
     // The robot lies on its modules: the centre of the head is one radius above the ground.
     const perception::GroundCamera camera(
         *info_, attitude, robot_.module_radius_m, head_,

@@ -12,6 +12,7 @@
 #include "constrictor/constants.hpp"
 #include "constrictor/messages.hpp"
 #include "perception/percept_errors.hpp"
+#include "robot/ground_slope_config.hpp"
 
 namespace constrictor::perception {
 
@@ -48,8 +49,8 @@ struct PerceptionConfig : ParameterSet {
                                "Height of an object whose height no image has shown yet");
   double object_radius_m = add(object_radius_m, "object.radius_m", 0.0, "m", {0.0, 2.0}, kWhileRunning,
                                "Radius of an object whose size no image has shown yet; 0: unknown");
-  double object_max_radius_m = add(object_max_radius_m, "object.max_radius_m", 0.2, "m", {0.02, 2.0}, kWhileRunning,
-                                   "No object is larger: what is wider and below the horizon is a zone");
+  double object_max_radius_m = add(object_max_radius_m, "object.max_radius_m", kLargestObjectRadius_m, "m", {0.02, 2.0},
+                                   kWhileRunning, "No object is larger: what is wider and below the horizon is a zone");
   int min_area_pixels = add(min_area_pixels, "blob.min_area_pixels", 14, "pixels", {1, 10000}, kWhileRunning,
                             "Smaller blobs are ignored");
   double blob_max_range_m = add(blob_max_range_m, "blob.max_range_m", 6.0, "m", {0.2, 50.0}, kWhileRunning,
@@ -58,10 +59,7 @@ struct PerceptionConfig : ParameterSet {
                                     "More distant obstacles are not reported; 0: none is looked for");
   double obstacle_min_contrast = add(obstacle_min_contrast, "obstacle.min_contrast", 0.06, "", {0.01, 1.0},
                                      kWhileRunning, "Least difference to ground and background (full scale: 1)");
-  double slope_time_s = add(slope_time_s, "ground.slope_time_s", 4.0, "s", {0.0, 600.0}, kWhileRunning,
-                            "Time constant of the mean that finds the slope; 0: the ground is level");
-  double level_rad = add(level_rad, "ground.level_rad", 0.015, "rad", {0.0, 0.3}, kWhileRunning,
-                         "Ground that is inclined by less than this counts as level");
+  GroundSlopeConfig ground = add_section(ground, "ground");
   int frozen_after = add(frozen_after, "camera.frozen_after", 3, "images", {0, 1000}, kWhileRunning,
                          "After this many equal images, further ones are refused: the camera is frozen. 0: never");
   int picture_period = add(picture_period, "picture_period", 5, "images", {1, 1000}, kWhileRunning,

@@ -44,7 +44,7 @@ struct PlannerConfig : ParameterSet {
   double on_zone_m =
       add(on_zone_m, "on_zone_m", 0.6, "m", {0, 5}, kAtStart,
           "After a drop, the planner ignores an object that is nearer than this to the zone of its colour");
-  double zone_radius_m = add(zone_radius_m, "zone_radius_m", 0.3, "m", kZoneRadiusBounds_m, kAtStart,
+  double zone_radius_m = add(zone_radius_m, "zone_radius_m", kUsualZoneRadius_m, "m", kZoneRadiusBounds_m, kAtStart,
                              "Radius of a zone of which no image has shown the whole width");
   double seen_sd_m =
       add(seen_sd_m, "seen_sd_m", 0.12, "m", {0.01, 5}, kAtStart,

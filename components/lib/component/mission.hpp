@@ -16,6 +16,10 @@ namespace constrictor {
 inline constexpr Range kZoneRadiusBounds_m{0.02, 5.0};
 /// Accepted usual radii of an object: of prior knowledge, and of the parameters that take it over.
 inline constexpr Range kObjectRadiusBounds_m{0.01, 2.0};
+// What components assume of objects and zones if neither the mission nor an image shows it; defaults of parameters.
+inline constexpr double kUsualObjectRadius_m = 0.085;
+inline constexpr double kLargestObjectRadius_m = 0.2;  ///< of the objects that the robot is made for
+inline constexpr double kUsualZoneRadius_m = 0.3;
 
 /// The facts about the scene that are known before the mission begins. A quantity that is not given keeps the value
 /// that each component's configuration has for it.
