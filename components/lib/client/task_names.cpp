@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <sstream>
 
+#include "component/task_parameters.hpp"
 #include "configuration/closest_name.hpp"
-#include "configuration/counted.hpp"
 #include "constrictor/constants.hpp"
 
 namespace constrictor {
@@ -88,9 +88,10 @@ std::string set_task_parameter(msg::TaskParameters& parameters, const std::strin
     parameters.*row.field = number;
     return {};
   }
-  const std::vector<std::string> accepted = {"line_colour",      "object_colour", "object_handle",
-                                             "drop_zone_colour", "direction",     "timeout_s",
-                                             "clearance_m",      "wrap_scale",    "path"};
+  std::vector<std::string> accepted;
+  Description<msg::TaskParameters>::visit(
+      parameters, [&accepted](const FieldInfo& info, const auto&) { accepted.emplace_back(info.name); });
+  accepted.emplace_back("path");
   return fmt::format("parameter: found '{}', accepted {}{}", key, fmt::join(accepted, ", "),
                      did_you_mean(name, accepted));
 }
@@ -98,9 +99,7 @@ std::string set_task_parameter(msg::TaskParameters& parameters, const std::strin
 std::string set_path(msg::Path& path, const std::vector<std::string>& points) {
   path = {};
   if (points.empty()) return {};
-  if (points.size() < 2 || points.size() > msg::kMaxPathPoints) {
-    return fmt::format("path: found {}, accepted 2 to {}", counted(points.size(), "point"), msg::kMaxPathPoints);
-  }
+  if (const std::string size = path_size_refusal(points.size()); !size.empty()) return "path: " + size;
   for (const auto& point : points) {
     double x_m = 0.0;
     double y_m = 0.0;
@@ -138,11 +137,8 @@ std::string parse_task(const std::string& line, std::uint8_t& task, msg::TaskPar
     }
     if (!problem.empty()) return problem;
   }
-  if ((task == msg::kTaskFollowPath) != (path.point_count > 0)) {
-    return task == msg::kTaskFollowPath ? "follow_path: found no path, accepted path=X,Y;X,Y (2 to 64 points in m)"
-                                        : "path: accepted with follow_path only";
-  }
-  return {};
+  const std::string refusal = path_refusal(task, path);
+  return refusal.empty() || path.point_count > 0 ? refusal : refusal + " (path=X,Y;X,Y in m)";
 }
 
 }  // namespace constrictor

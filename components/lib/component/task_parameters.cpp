@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "configuration/counted.hpp"
 #include "constrictor/constants.hpp"
 
 namespace constrictor {
@@ -43,8 +44,7 @@ std::string direction_problem(std::uint8_t direction, bool left_or_right) {
 
 std::string path_problem(const msg::Path& path) {
   constexpr double kShortest_m = 1e-3;
-  if (path.point_count < 2 || path.point_count > msg::kMaxPathPoints)
-    return fmt::format("a path: found {} points, accepted 2 to {}", path.point_count, msg::kMaxPathPoints);
+  if (const std::string size = path_size_refusal(path.point_count); !size.empty()) return "a path: " + size;
   for (std::size_t i = 1; i < path.point_count; ++i) {
     const double apart_m = std::hypot(path.x_m[i] - path.x_m[i - 1], path.y_m[i] - path.y_m[i - 1]);
     if (!std::isfinite(apart_m) || apart_m <= kShortest_m) {
@@ -100,6 +100,17 @@ TaskParameter parameter_of(Need need) {
 }
 
 }  // namespace
+
+std::string path_size_refusal(std::size_t points) {
+  constexpr std::size_t kFewest = 2, kMost = msg::kMaxPathPoints;
+  if (points >= kFewest && points <= kMost) return {};
+  return fmt::format("found {}, accepted {} to {}", counted(points, "point"), kFewest, kMost);
+}
+
+std::string path_refusal(std::uint8_t task, const msg::Path& path) {
+  if (task == msg::kTaskFollowPath) return task_parameter_refusal(task, {}, path);  // it needs nothing else
+  return path.point_count > 0 ? "path: accepted with follow_path only" : "";
+}
 
 std::vector<TaskParameter> task_parameters_of(std::uint8_t task) {
   std::vector<TaskParameter> parameters;

@@ -2,6 +2,7 @@
 // request takes authority, navigation before it starts a goal, and clients may check them before they send a request.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -14,6 +15,13 @@ namespace constrictor {
 /// accepted. Empty if the parameters are complete. Navigation decides whether the robot can do the task at present.
 [[nodiscard]] std::string task_parameter_refusal(std::uint8_t task, const msg::TaskParameters& parameters,
                                                  const msg::Path& path);
+
+/// Why a path cannot have so many points: "found 1 point, accepted 2 to 64". Empty if it can.
+[[nodiscard]] std::string path_size_refusal(std::size_t points);
+
+/// For clients whose users write the request: why this task cannot have this path, because it needs another one or
+/// follows none. Empty if it can. `input` ignores the path of a task that follows none.
+[[nodiscard]] std::string path_refusal(std::uint8_t task, const msg::Path& path);
 
 /// A parameter that a task needs or uses, for programs that ask people for it.
 struct TaskParameter {

@@ -97,10 +97,6 @@ msg::Request request_of(const TaskOptions& options) {
   }
   std::string problem = set_path(request.path, options.path);
   if (!problem.empty()) throw UsageError("--" + problem);
-  if ((*task == msg::kTaskFollowPath) != (request.path.point_count > 0)) {
-    throw UsageError(*task == msg::kTaskFollowPath ? "follow_path: found no --path, accepted one of 2 to 64 points"
-                                                   : "--path: accepted with follow_path only");
-  }
   problem = task_problem(request);
   if (!problem.empty()) throw UsageError(problem + " (constrictor task start --help)");
   return request;
@@ -247,8 +243,9 @@ void add_task(CLI::App& app, Action& action) {
   }
   start_app
       ->add_option("--path", options->path,
-                   "[m] of follow_path: 2 to 64 points X,Y on the map, x ahead and y left of the robot's first "
-                   "position; the path must pass within 1 m of the robot")
+                   fmt::format("[m] of follow_path: 2 to {} points X,Y on the map, x ahead and y left of the robot's "
+                               "first position; the path must pass within 1 m of the robot",
+                               msg::kMaxPathPoints))
       ->expected(2, static_cast<int>(msg::kMaxPathPoints))
       ->option_text("X,Y X,Y...");
   start_app->footer(help_footer(

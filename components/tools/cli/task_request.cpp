@@ -9,7 +9,8 @@
 namespace constrictor::cli {
 
 std::string task_problem(const msg::Request& request) {
-  return task_parameter_refusal(request.task, request.parameters, request.path);
+  const std::string path = path_refusal(request.task, request.path);
+  return path.empty() ? task_parameter_refusal(request.task, request.parameters, request.path) : path;
 }
 
 std::string goal_text(std::uint64_t goal) {

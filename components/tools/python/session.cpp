@@ -263,18 +263,16 @@ std::uint64_t Session::start(const std::string& task, const TaskArguments& given
       throw std::invalid_argument(fmt::format("{}: found {}, accepted {}", name, number, row->accepted()));
     request.parameters.*row->field = number;
   }
-  if (given.path.size() > msg::kMaxPathPoints)
-    throw std::invalid_argument(
-        fmt::format("path: found {} points, accepted 2 to {}", given.path.size(), msg::kMaxPathPoints));
+  std::string problem = given.path.empty() ? std::string{} : path_size_refusal(given.path.size());
+  if (!problem.empty()) throw std::invalid_argument("path: " + problem);
   for (const auto& [x_m, y_m] : given.path) {
     request.path.x_m[request.path.point_count] = x_m;
     request.path.y_m[request.path.point_count] = y_m;
     ++request.path.point_count;
   }
-  if (!given.path.empty() && request.task != msg::kTaskFollowPath)
-    throw std::invalid_argument("path: accepted with follow_path only");
-  const std::string missing = task_parameter_refusal(request.task, request.parameters, request.path);
-  if (!missing.empty()) throw std::invalid_argument(missing);
+  problem = path_refusal(request.task, request.path);
+  if (problem.empty()) problem = task_parameter_refusal(request.task, request.parameters, request.path);
+  if (!problem.empty()) throw std::invalid_argument(problem);
   const Turn turn(*this);
   return client().start_goal(request);
 }

@@ -108,6 +108,21 @@ TEST_F(TaskParametersTest, FollowPathNeedsDifferentFinitePoints) {
   EXPECT_FALSE(accepts(msg::kTaskFollowPath));
 }
 
+TEST_F(TaskParametersTest, APathOf2To64PointsBelongsToFollowPathOnly) {
+  EXPECT_EQ(path_refusal(msg::kTaskRotate, path), "");
+  EXPECT_EQ(path_refusal(msg::kTaskFollowPath, path), "follow_path needs a path: found 0 points, accepted 2 to 64");
+  path.point_count = 2;
+  path.x_m[1] = 1.0;
+  EXPECT_EQ(path_refusal(msg::kTaskFollowPath, path), "");
+  EXPECT_EQ(path_refusal(msg::kTaskRotate, path), "path: accepted with follow_path only");
+  parameters.direction = msg::kDirectionLeft;
+  EXPECT_TRUE(accepts(msg::kTaskRotate)) << "`input` ignores a path that no task follows";
+  EXPECT_EQ(path_size_refusal(1), "found 1 point, accepted 2 to 64");
+  EXPECT_EQ(path_size_refusal(2), "");
+  EXPECT_EQ(path_size_refusal(64), "");
+  EXPECT_NE(path_size_refusal(65), "");
+}
+
 TEST_F(TaskParametersTest, UnknownTasksAreRefused) {
   EXPECT_FALSE(accepts(msg::kTaskNone));
   EXPECT_FALSE(accepts(msg::kTaskCount));
