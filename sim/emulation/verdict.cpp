@@ -9,12 +9,12 @@
 
 #include "configuration/configuration.hpp"
 #include "constrictor/constants.hpp"
+#include "sim/scenario_loader/line_end.hpp"
 
 namespace constrictor::emulation {
 namespace {
 
 using nlohmann::ordered_json;
-constexpr double kAtEnd_m = 0.7;  // as sim/report: the task ends before the head has reached the last point of the line
 
 struct Place {
   bool in_zone = false;
@@ -34,11 +34,7 @@ Place place_of(const World& world, std::size_t object) {
 
 std::string shortfall(const World& world, const std::vector<std::uint8_t>& sequence) {
   const Scenario& scenario = world.scenario();
-  if (sequence.empty()) {
-    if (scenario.line_m.empty()) return "the scenario has neither objects to retrieve nor a line";
-    const double distance_m = (world.module_pose(0).translation().head<2>() - scenario.line_m.back()).norm();
-    return distance_m <= kAtEnd_m ? "" : fmt::format("the head is {:.2f} m from the end of the line", distance_m);
-  }
+  if (sequence.empty()) return line_shortfall(world.module_pose(0).translation().head<2>(), scenario.line_m);
   std::vector<std::string> faults;
   for (std::uint8_t colour = 1; colour < msg::kColourCount; ++colour) {
     const auto wanted = std::count(sequence.begin(), sequence.end(), colour);

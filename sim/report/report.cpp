@@ -12,6 +12,7 @@
 #include "constrictor/image.hpp"
 #include "constrictor/json.hpp"
 #include "robot/planar_message.hpp"
+#include "sim/scenario_loader/line_end.hpp"
 
 namespace constrictor {
 
@@ -239,22 +240,16 @@ void Report::end_early(const Tick& tick, const std::string& reason) {
   add_moment(tick.index, tick.time_s(), msg::kEventNone, msg::kColourUnknown);
 }
 
-std::string Report::line_shortfall() const {
-  constexpr double kAtEnd_m = 0.7;  // the task ends before the head has reached the last point of the line
-  if (line_m_.empty()) return "the scenario has neither objects nor a line";
-  const msg::Vector3& head = world_->module_poses[0].position_m;
-  const double distance_m = (Eigen::Vector2d(head.x, head.y) - line_m_.back()).norm();
-  if (distance_m <= kAtEnd_m) return {};
-  return fmt::format("the head is {:.2f} m from the end of the line", distance_m);
-}
-
 std::string Report::failure() const {
   switch (state_.mission) {
     case msg::kMissionRunning:
       return state_.run_end_reason;
-    case msg::kMissionSucceeded:
+    case msg::kMissionSucceeded: {
       if (!truth()) return {};
-      return state_.ledger.sequence.empty() ? line_shortfall() : state_.ledger.shortfall(*scene_, *world_);
+      const msg::Vector3& head = world_->module_poses[0].position_m;
+      return state_.ledger.sequence.empty() ? line_shortfall(Eigen::Vector2d(head.x, head.y), line_m_)
+                                            : state_.ledger.shortfall(*scene_, *world_);
+    }
     default:
       return "the planner gave up: " + (state_.mission_reason.empty() ? "it gave no reason" : state_.mission_reason);
   }

@@ -88,8 +88,6 @@ class Report : public ConfiguredComponent<ReportState, ReportConfig>, public Con
   [[nodiscard]] std::string outcome() const;
   /// Why the mission did not succeed; empty on success.
   [[nodiscard]] std::string failure() const;
-  /// The reason why a mission without objects is not complete; empty if the head is at the end of the line.
-  [[nodiscard]] std::string line_shortfall() const;
   // Defined in report_files.cpp.
   void write_files(const Tick& tick);
   [[nodiscard]] std::string mission_json(const Tick& tick, const std::string& figure_error) const;

@@ -10,10 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Neighbouring modules overlap at their joint, and modules two apart may touch at the joints' limits. Neither pair
-// makes contacts.
-constexpr std::size_t kNearestSelfContact = 3;
-
 OdeGeom make_geom(BodyShape shape, const Vector3d& size_m) {
   ensure_ode();
   return OdeGeom(shape == BodyShape::kCylinder ? dCreateCylinder(nullptr, size_m.x(), size_m.z())

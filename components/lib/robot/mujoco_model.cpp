@@ -12,9 +12,6 @@ namespace {
 
 // MuJoCo cannot invert the inertia of two hinges about one axis if nothing lies between them.
 constexpr double kLeastRotorInertia_kg_m2 = 1e-6;
-// Modules that are nearer to each other along the body than this overlap at their joint, or touch at its limits. They
-// make no contacts, as in sim/world.
-constexpr std::size_t kNearestSelfContact = 3;
 // The friction of modules on each other: the default of a scenario of the simulator.
 constexpr double kModuleFriction = 0.2;
 

@@ -87,6 +87,10 @@ struct RobotModel {
   [[nodiscard]] std::vector<std::size_t> yaw_joints() const;
 };
 
+/// Neighbouring modules overlap at their joint, and modules two apart may touch at the joints' limits. Neither pair
+/// makes contacts in a simulation: two modules do that are at least so many apart along the body.
+inline constexpr std::size_t kNearestSelfContact = 3;
+
 /// Reads and checks a robot file (YAML). Throws ConfigurationError that names file, line, key, found and accepted.
 RobotModel load_robot(const std::filesystem::path& file);
 
