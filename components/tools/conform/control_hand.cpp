@@ -70,7 +70,7 @@ void ControlHand::send(std::int64_t count) {
 
 std::vector<ControlStep> ControlHand::run(double seconds) {
   std::vector<ControlStep> steps;
-  const auto ticks = std::max(1L, std::lround(seconds / kPeriod_s));
+  const auto ticks = std::max(1L, std::lround(seconds / kTick_s));
   for (long i = 0; i < ticks; ++i) {
     send(steps_++);
     const std::vector<double> shown_rad = measured_rad_;
@@ -86,10 +86,10 @@ std::vector<ControlStep> ControlHand::run(double seconds) {
       const msg::JointCommand& command = step.commands.back();
       for (std::size_t j = 0; j < std::min<std::size_t>(measured_rad_.size(), command.joint_count); ++j) {
         if (command.torque_limit_nm[j] <= 0.0) continue;
-        const double most_rad = robot_.joints[j].max_speed_rad_s * kPeriod_s;
+        const double most_rad = robot_.joints[j].max_speed_rad_s * kTick_s;
         const double way_rad = std::clamp(command.position_rad[j] - measured_rad_[j], -most_rad, most_rad);
         measured_rad_[j] += way_rad;
-        velocity_rad_s_[j] = way_rad / kPeriod_s;
+        velocity_rad_s_[j] = way_rad / kTick_s;
       }
     }
     steps.push_back(std::move(step));

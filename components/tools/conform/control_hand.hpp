@@ -20,8 +20,6 @@ struct ControlStep {
 
 class ControlHand {
  public:
-  static constexpr double kPeriod_s = 0.02;
-
   ControlHand(PartPort& port, const RobotModel& robot);
 
   /// Goes on for `seconds` with the present trajectory, authority and joints. Returns all ticks.

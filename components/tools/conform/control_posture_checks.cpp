@@ -51,7 +51,7 @@ void ControlConformance::check_bend() {
     }
   }
   const msg::MotionStatus* state = last_state(first);
-  const bool late = !echo_ticks || ControlHand::kPeriod_s * static_cast<double>(*echo_ticks) > profile_.answer_s;
+  const bool late = !echo_ticks || kTick_s * static_cast<double>(*echo_ticks) > profile_.answer_s;
   report_.judge("echo", late,
                 echo_ticks ? "after " + counted(*echo_ticks, "tick")
                 : state ? fmt::format("motion {} with the method '{}', not motion {} with its method", state->motion_id,
@@ -113,7 +113,7 @@ void ControlConformance::judge_course(const Steps& steps, const std::vector<doub
     now = yaw_angles(step.commands.back());
     double left_rad = 0.0;
     for (std::size_t k = 0; k < now.size(); ++k) {
-      if (before) fastest_rad_s = std::max(fastest_rad_s, std::abs(now[k] - last[k]) / ControlHand::kPeriod_s);
+      if (before) fastest_rad_s = std::max(fastest_rad_s, std::abs(now[k] - last[k]) / kTick_s);
       left_rad = std::max(left_rad, std::abs(now[k] - shape_rad[k]));
     }
     last = now;

@@ -75,7 +75,6 @@ void ControlConformance::run() {
 ControlConformance::Steps ControlConformance::go(double seconds) {
   Steps steps = hand_.run(seconds);
   refuse_silence(steps);
-  constexpr double kPeriod_s = ControlHand::kPeriod_s;
   for (const auto& step : steps) {
     for (const auto& command : step.commands) {
       const std::size_t count = std::min<std::size_t>(command.joint_count, robot_.joints.size());
@@ -86,7 +85,7 @@ ControlConformance::Steps ControlConformance::go(double seconds) {
         beyond_rad_ = std::max({beyond_rad_, angle_rad - joint.max_rad, joint.min_rad - angle_rad});
         beyond_nm_ = std::max({beyond_nm_, command.torque_limit_nm[j] - joint.max_torque_nm});
         if (!follows || !judges_rate_ || command.torque_limit_nm[j] <= 0.0) continue;
-        const double rate_rad_s = (angle_rad - previous_rad_[j]) / kPeriod_s;
+        const double rate_rad_s = (angle_rad - previous_rad_[j]) / kTick_s;
         if (std::abs(rate_rad_s) / joint.max_speed_rad_s > largest_rate_) {
           largest_rate_ = std::abs(rate_rad_s) / joint.max_speed_rad_s;
           fastest_ = j;
@@ -104,7 +103,7 @@ ControlConformance::Steps ControlConformance::go(double seconds) {
 }
 
 void ControlConformance::refuse_silence(const Steps& steps) const {
-  const double seconds = ControlHand::kPeriod_s * static_cast<double>(steps.size());
+  const double seconds = kTick_s * static_cast<double>(steps.size());
   if (!arrived_ || seconds < kSilence_s) return;
   const char* missing = last_command(steps) == nullptr ? "joint_command"
                         : last_state(steps) == nullptr ? "motion_status"
@@ -115,7 +114,7 @@ void ControlConformance::refuse_silence(const Steps& steps) const {
 
 double ControlConformance::strayed_rad(const Steps& steps, const std::vector<double>& posture_rad, double from_s) {
   double most_rad = 0.0;
-  for (std::size_t i = static_cast<std::size_t>(from_s / ControlHand::kPeriod_s); i < steps.size(); ++i) {
+  for (std::size_t i = static_cast<std::size_t>(from_s / kTick_s); i < steps.size(); ++i) {
     for (const auto& command : steps[i].commands) {
       for (std::size_t j = 0; j < std::min<std::size_t>(command.joint_count, posture_rad.size()); ++j)
         most_rad = std::max(most_rad, std::abs(command.position_rad[j] - posture_rad[j]));
@@ -139,7 +138,7 @@ const msg::MotionStatus* ControlConformance::last_state(const Steps& steps) {
 }
 
 double ControlConformance::moved_rad(const Steps& steps, double from_s) {
-  const auto first = static_cast<std::size_t>(from_s / ControlHand::kPeriod_s);
+  const auto first = static_cast<std::size_t>(from_s / kTick_s);
   for (std::size_t i = first; i < steps.size(); ++i) {
     if (steps[i].commands.empty()) continue;
     const msg::JointCommand& command = steps[i].commands.front();
@@ -153,8 +152,8 @@ bool ControlConformance::check_arrival() {
   hand_.stuck = true;
   Steps steps;
   const auto begun = [&] { return last_command(steps) != nullptr && last_state(steps) != nullptr; };
-  for (double waited_s = 0.0; waited_s < profile_.patience_s && !begun(); waited_s += ControlHand::kPeriod_s) {
-    for (auto& step : go(ControlHand::kPeriod_s)) steps.push_back(std::move(step));
+  for (double waited_s = 0.0; waited_s < profile_.patience_s && !begun(); waited_s += kTick_s) {
+    for (auto& step : go(kTick_s)) steps.push_back(std::move(step));
   }
   const msg::JointCommand* first = last_command(steps);
   const bool arrived = begun();

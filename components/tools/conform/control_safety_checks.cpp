@@ -88,7 +88,7 @@ void ControlConformance::check_authority() {
   judges_rate_ = false;      // the setpoints jump to the measured angles
   double nearest_rad = 1e9;  // of the ticks after the takeover
   for (const auto& step : go(0.5)) nearest_rad = std::min(nearest_rad, strayed_rad({step}, posture_rad));
-  const double step_rad = 4.0 * ControlHand::kPeriod_s;  // the first command may already move on
+  const double step_rad = 4.0 * kTick_s;  // the first command may already move on
   report_.judge("takeover", nearest_rad > step_rad + profile_.posture_rad,
                 fmt::format("begins {:.3f} rad from the measured posture", nearest_rad),
                 "begin at the measured angles when another source takes over; a loaded joint is not at its setpoint");
@@ -128,7 +128,7 @@ void ControlConformance::check_wrong_joints() {
   hand_.false_joint_count = robot_.joints.size() - 1;
   const Steps wrong = go(0.6);
   hand_.false_joint_count = 0;
-  const Steps again = go(0.02 * PartPort::kStatusTicks);
+  const Steps again = go(kTick_s * PartPort::kStatusTicks);
   const double far_rad = std::max(strayed_rad(wrong, posture_rad), strayed_rad(again, posture_rad));
   bool sized = true;
   for (const auto& step : wrong) {

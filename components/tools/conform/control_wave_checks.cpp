@@ -37,7 +37,7 @@ Fit fitted(const std::vector<ControlStep>& steps, std::size_t joint, double freq
   int passes = 0;
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double swing = angles[i] - fit.mean_rad;
-    const double argument = 2.0 * kPi * frequency_hz * ControlHand::kPeriod_s * static_cast<double>(i);
+    const double argument = 2.0 * kPi * frequency_hz * kTick_s * static_cast<double>(i);
     a += 2.0 / count * swing * std::cos(argument);
     b += 2.0 / count * swing * std::sin(argument);
     variance += swing * swing / count;
@@ -46,7 +46,7 @@ Fit fitted(const std::vector<ControlStep>& steps, std::size_t joint, double freq
   fit.amplitude_rad = std::hypot(a, b);
   fit.phase_rad = std::atan2(-b, a);
   fit.explained = variance > 1e-12 ? 0.5 * fit.amplitude_rad * fit.amplitude_rad / variance : 0.0;
-  fit.seen_hz = 0.5 * passes / (count * ControlHand::kPeriod_s);
+  fit.seen_hz = 0.5 * passes / (count * kTick_s);
   return fit;
 }
 
@@ -127,7 +127,7 @@ void ControlConformance::judge_speed(const Steps& steps) {
       const msg::JointCommand& now = step.commands.back();
       for (const std::size_t joint : yaw_) {
         if (!before) continue;
-        sum += std::abs(now.position_rad[joint] - before->position_rad[joint]) / ControlHand::kPeriod_s;
+        sum += std::abs(now.position_rad[joint] - before->position_rad[joint]) / kTick_s;
         ++count;
       }
       before = &now;

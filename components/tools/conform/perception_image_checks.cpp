@@ -124,7 +124,7 @@ bool PerceptionConformance::check_arrival() {
                 "answer each image, also if nothing is seen in it");
   report_.pass_unless("stamp", stamp, "that of the image",
                       "copy CameraImage.exposure_tick; guidance takes the pose of that tick");
-  const double slowest_s = 0.02 * static_cast<double>(slowest_ticks);
+  const double slowest_s = kTick_s * static_cast<double>(slowest_ticks);
   report_.judge("answer", slowest_s > profile_.answer_s, fmt::format("{:.2f} s at most", slowest_s),
                 fmt::format("be faster than {} s, or change answer_s of the profile", profile_.answer_s));
   if (pictures == 0) report_.skip("picture", "perception writes no perception/image");
