@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "configuration/quantiles.hpp"
 #include "control/control_method.hpp"
 #include "robot/u_arms.hpp"
 
@@ -39,9 +40,7 @@ struct JointBound {
 double of_most_joints(const RobotModel& robot, double JointModel::*member) {
   std::vector<double> values;
   for (const std::size_t j : robot.yaw_joints()) values.push_back(robot.joints[j].*member);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median(values);
 }
 
 void judge_joint(const RobotModel& robot, const JointBound& bound, CheckVerdict& verdict) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "configuration/quantiles.hpp"
 #include "perception/colour_edge.hpp"
 #include "perception/silhouette.hpp"
 
@@ -205,8 +206,8 @@ void Gauge::find_sides() {
   left_hidden_ = camera_.sees_body() && 2 * lefts_hidden > lefts.size();
   right_hidden_ = camera_.sees_body() && 2 * rights_hidden > rights.size();
   if (lefts.empty() || rights.empty()) return;
-  left_ = median(lefts);
-  right_ = median(rights);
+  left_ = upper_median(lefts);
+  right_ = upper_median(rights);
   // The object continues beyond the border of the image.
   left_open_ = region_.standing_first == 0;
   right_open_ = region_.standing_last == camera_.width() - 1;
@@ -240,7 +241,7 @@ double Gauge::height_m(double range_m, bool cut_top) const {
   Few<double, kPaths> slopes;
   if (cut_top) slopes.push_back(-descent(camera_, {0.5 * (region_.standing_first + region_.standing_last + 1), 0.0}));
   else slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
-  return slopes.empty() ? kNan : camera_.height_m() + range_m * median(slopes);
+  return slopes.empty() ? kNan : camera_.height_m() + range_m * upper_median(slopes);
 }
 
 std::optional<msg::Blob> Gauge::finish(msg::Blob blob, double left, double right, double range_m) const {

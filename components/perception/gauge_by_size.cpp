@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "configuration/quantiles.hpp"
 #include "perception/gauge.hpp"
 #include "perception/silhouette.hpp"
 
@@ -37,7 +38,7 @@ double Gauge::range_by_height(double height_m, double slope) const {
 
 double Gauge::upper_slope() const {
   Few<double, kPaths> slopes = upper_edge_slopes(rgb_, camera_, regions_, id_, right_, left_);
-  return slopes.empty() ? kUnknown : median(slopes);
+  return slopes.empty() ? kUnknown : upper_median(slopes);
 }
 
 ObjectSize Gauge::likeliest_size(const msg::Blob& blob, double slope, bool on_zone) const {

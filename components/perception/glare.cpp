@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "configuration/quantiles.hpp"
 #include "perception/ground_colour.hpp"
-#include "perception/sight.hpp"
 
 namespace constrictor::perception {
 namespace {
@@ -47,7 +47,7 @@ double noise_sd(const cv::Mat& rgb, const GroundCamera& camera, const Labels& la
       differences.push_back(std::abs(darkest_channel(pixel) - darkest_channel(pixel - 3 * kGridColumns)));
     }
   }
-  return differences.empty() ? 0.0 : median(differences) / (kMedianOfNormal * std::numbers::sqrt2);
+  return differences.empty() ? 0.0 : upper_median(differences) / (kMedianOfNormal * std::numbers::sqrt2);
 }
 
 UsualGround ground_under_glare(const cv::Mat& rgb, const GroundCamera& camera, const Labels& labels,

@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "perception/sight.hpp"
+#include "configuration/quantiles.hpp"
 
 namespace constrictor::perception {
 namespace {
@@ -108,7 +108,7 @@ void TintSamples::add(const Tint& tint) {
   blue_.push_back(tint.blue);
 }
 
-Tint TintSamples::usual() { return red_.empty() ? Tint{} : Tint{median(red_), median(blue_)}; }
+Tint TintSamples::usual() { return red_.empty() ? Tint{} : Tint{upper_median(red_), upper_median(blue_)}; }
 
 bool GroundColour::is_like(const GroundColour& other) const {
   return colour == other.colour && (!coloured() || tint.distance(other.tint) < Tint::kTolerance);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "perception/sight.hpp"
+#include "configuration/quantiles.hpp"
 
 namespace constrictor::perception {
 namespace {
@@ -81,7 +81,7 @@ LineFit LineFitter::fit(const LineTrace& trace, double lookahead_m) {
         residual_[i - first] = std::abs(d.dot(n) - (c[0] + c[1] * s + c[2] * s * s)) / points[i].sd_m;
       }
       sorted_ = residual_;
-      const double scale = std::max(1.5, 1.48 * median(sorted_)) * 4.7;
+      const double scale = std::max(1.5, 1.48 * upper_median(sorted_)) * 4.7;
       for (std::size_t i = 0; i < weight_.size(); ++i) {
         const double r = residual_[i] / scale;
         weight_[i] = r < 1.0 ? (1.0 - r * r) * (1.0 - r * r) : 0.0;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "perception/sight.hpp"
+#include "configuration/quantiles.hpp"
 #include "perception/silhouette.hpp"
 
 namespace constrictor::perception {
@@ -50,7 +50,7 @@ Rise rise_of_whole(const Few<Path, kPaths>& paths, const GroundCamera& camera, c
     heights.push_back(camera.height_m() - disc.far_m(path.aside_rad) * std::max(path.slope, 0.0));
   const double least_m = std::max(kLeastObjectHeight_m, kRisePixels * disc.centre_m / camera.focal_pixels());
   const double lowest_m = *std::min_element(heights.begin(), heights.end());
-  height.m = median(heights);
+  height.m = upper_median(heights);
   height.sd = std::min(height.m - least_m, 2.0 * lowest_m - least_m) / (least_m / kRisePixels);
   return height.sd >= 0.0 ? Rise::kLow : Rise::kFlat;
 }

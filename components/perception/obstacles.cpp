@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "configuration/quantiles.hpp"
 #include "constrictor/messages.hpp"
 #include "perception/sight.hpp"
 
@@ -144,7 +145,7 @@ class Surface {
     feet_ = {feet_[1], feet_[2], foot};
     if (++columns_ < kColumns || found_.full()) return;
     std::array ranges_m{feet_[0].norm(), feet_[1].norm(), feet_[2].norm()};
-    const Eigen::Vector2d p = camera_.position_on_ground() + median(ranges_m) * feet_[1].normalized();
+    const Eigen::Vector2d p = camera_.position_on_ground() + upper_median(ranges_m) * feet_[1].normalized();
     if (points_ > 0 && (p - last_).norm() < kSpacing_m) return;
     found_.push_back(p);
     last_ = p;

@@ -1,6 +1,5 @@
 #include "perception/sight.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace constrictor::perception {
@@ -25,12 +24,6 @@ std::optional<VerticalPlane> vertical_plane(const GroundCamera& camera, double a
 
 double path_share(std::size_t i, std::size_t count, double width) {
   return 0.5 + width * (static_cast<double>(i) / static_cast<double>(count - 1) - 0.5);
-}
-
-double median(std::span<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace constrictor::perception

@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <span>
 
 #include "perception/ground_camera.hpp"
 
@@ -33,8 +32,5 @@ struct VerticalPlane {
 /// Where path `i` of `count` crosses something in view, as a share of the way from its right side (0) to its left side
 /// (1). The paths are spread evenly over the middle `width` of this way.
 [[nodiscard]] double path_share(std::size_t i, std::size_t count, double width);
-
-/// The median; reorders `values`, which must not be empty.
-[[nodiscard]] double median(std::span<double> values);
 
 }  // namespace constrictor::perception

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "configuration/quantiles.hpp"
 #include "perception/colour_edge.hpp"
 #include "perception/sight.hpp"
 
@@ -88,7 +89,7 @@ double lower_edge_range_m(const cv::Mat& rgb, const GroundCamera& camera, const 
   }
   cut = 2 * cuts > kPaths;
   if (ranges.empty() || lost > ranges.size()) return std::numeric_limits<double>::quiet_NaN();
-  return median(ranges);
+  return upper_median(ranges);
 }
 
 Few<double, kPaths> upper_edge_slopes(const cv::Mat& rgb, const GroundCamera& camera, const Regions& regions,

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
+#include "configuration/quantiles.hpp"
 #include "configuration/whole_file.hpp"
 #include "constrictor/json.hpp"
 
@@ -12,12 +12,6 @@ namespace constrictor {
 namespace {
 
 constexpr std::size_t kMostNews = 50;
-
-/// [ms] the value below which `share` of the sorted durations are.
-double quantile_ms(const std::vector<std::int64_t>& sorted, double share) {
-  const auto index = static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1));
-  return static_cast<double>(sorted[index]) * 1e-6;
-}
 
 }  // namespace
 
@@ -32,19 +26,19 @@ void DeviceRecord::add_news(const std::string& line) {
 }
 
 void DeviceRecord::replace(std::string state, const std::function<nlohmann::json()>& make_fields) {
-  std::vector<std::int64_t> durations_ns = std::exchange(durations_ns_, {});
-  std::sort(durations_ns.begin(), durations_ns.end());
+  std::vector<double> durations_ms;
+  for (const std::int64_t ns : std::exchange(durations_ns_, {})) durations_ms.push_back(static_cast<double>(ns) * 1e-6);
   summary_ = std::move(state);
-  if (!durations_ns.empty())
-    summary_ += fmt::format(", {} {:.1f} ms (99 %: {:.1f})", durations_, quantile_ms(durations_ns, 0.5),
-                            quantile_ms(durations_ns, 0.99));
+  if (!durations_ms.empty())
+    summary_ += fmt::format(", {} {:.1f} ms (99 %: {:.1f})", durations_, lower_quantile(durations_ms, 0.5),
+                            lower_quantile(durations_ms, 0.99));
   if (file_.empty()) return;
   nlohmann::json record = make_fields();
   record["news"] = news_;
-  if (!durations_ns.empty()) {
-    record[durations_ + "_ms"] = {{"median", quantile_ms(durations_ns, 0.5)},
-                                  {"p99", quantile_ms(durations_ns, 0.99)},
-                                  {"longest", quantile_ms(durations_ns, 1.0)}};
+  if (!durations_ms.empty()) {
+    record[durations_ + "_ms"] = {{"median", lower_quantile(durations_ms, 0.5)},
+                                  {"p99", lower_quantile(durations_ms, 0.99)},
+                                  {"longest", lower_quantile(durations_ms, 1.0)}};
   }
   const std::string text = json_text(record, 1) + "\n";
   try {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "runtime/quantile.hpp"
+#include "configuration/quantiles.hpp"
 
 namespace constrictor {
 
@@ -25,8 +25,8 @@ void JitterMeter::arrived(Clock::time_point now, std::int64_t time_ns) {
 void JitterMeter::begin() { *this = {}; }
 
 void JitterMeter::fill(msg::ComponentStatus& status) {
-  status.jitter_p50_us = quantile(interval_us_, 0.5);
-  status.jitter_p99_us = quantile(interval_us_, 0.99);
+  status.jitter_p50_us = lower_quantile(interval_us_, 0.5);
+  status.jitter_p99_us = lower_quantile(interval_us_, 0.99);
   status.jitter_max_us = std::isfinite(max_us_) ? max_us_ : std::numeric_limits<double>::quiet_NaN();
   interval_us_.clear();
 }

@@ -2,7 +2,7 @@
 
 #include <sys/resource.h>
 
-#include "runtime/quantile.hpp"
+#include "configuration/quantiles.hpp"
 
 namespace constrictor {
 namespace {
@@ -19,8 +19,8 @@ double cpu_seconds() {
 }  // namespace
 
 void StatusMeter::fill(msg::ComponentStatus& status) {
-  status.step_time_p50_us = quantile(steps_us_, 0.5);
-  status.step_time_p99_us = quantile(steps_us_, 0.99);
+  status.step_time_p50_us = lower_quantile(steps_us_, 0.5);
+  status.step_time_p99_us = lower_quantile(steps_us_, 0.99);
   status.cpu_s = cpu_seconds();
   next_tick_ = status.tick + kInterval_ticks;
   steps_us_.clear();

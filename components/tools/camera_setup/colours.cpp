@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "configuration/quantiles.hpp"
 #include "constrictor/constants.hpp"
 
 namespace constrictor::camera_setup {
@@ -33,12 +34,6 @@ Hue hue_of(const cv::Vec3b& bgr) {
   if (chroma <= 0.0) return {0.0, 0.0, 0.0};
   const double sixth = most == r ? (g - b) / chroma : most == g ? 2.0 + (b - r) / chroma : 4.0 + (r - g) / chroma;
   return {wrapped_deg(60.0 * sixth), chroma, chroma / most};
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 /// Throws std::invalid_argument if the pixels have no colour. The hue of grey pixels is noise, or 0 (red).
@@ -80,11 +75,11 @@ ColourSample::Statistics ColourSample::statistics() const {
   }
   found.hue_deg = wrapped_deg(std::atan2(y, x) * 180.0 / std::numbers::pi);
   for (double& hue : hues) hue = std::abs(turn_deg(found.hue_deg, hue));
-  found.spread_deg = quantile(std::move(hues), 1.0 - kOutside);
-  found.highest_chroma = quantile(chromas, 1.0 - kOutside);
-  found.highest_saturation = quantile(saturations, 1.0 - kOutside);
-  found.chroma = quantile(std::move(chromas), kOutside);
-  found.saturation = quantile(std::move(saturations), kOutside);
+  found.spread_deg = lower_quantile(hues, 1.0 - kOutside);
+  found.highest_chroma = lower_quantile(chromas, 1.0 - kOutside);
+  found.highest_saturation = lower_quantile(saturations, 1.0 - kOutside);
+  found.chroma = lower_quantile(chromas, kOutside);
+  found.saturation = lower_quantile(saturations, kOutside);
   return found;
 }
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "configuration/quantiles.hpp"
 #include "conform/control_conformance.hpp"
-#include "conform/median.hpp"
 #include "robot/planar.hpp"
 #include "robot/trajectory_path.hpp"
 
@@ -99,7 +99,7 @@ void ControlConformance::judge_wave(const Steps& steps) {
       const double lag = fitted(some, yaw_[k + 1], rate_hz_).phase_rad - fitted(some, yaw_[k], rate_hz_).phase_rad;
       lags.push_back(wrap_angle(lag));
     }
-    return median(std::move(lags));
+    return upper_median(lags);
   };
   const Fit middle = fitted(steps, yaw_[yaw_.size() / 2], rate_hz_);
   report_.judge("period", middle.explained < 0.8,

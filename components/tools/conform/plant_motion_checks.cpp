@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "configuration/counted.hpp"
-#include "conform/median.hpp"
+#include "configuration/quantiles.hpp"
 #include "conform/plant_conformance.hpp"
 #include "conform/unit_factor.hpp"
 
@@ -52,7 +52,7 @@ std::optional<double> velocity_ratio(const std::vector<Instant>& motion, std::si
   };
   std::vector<double> durations_s;
   for (std::size_t i = 1; i < samples.size(); ++i) durations_s.push_back(duration_s(i));
-  const double usual_s = median(std::move(durations_s));
+  const double usual_s = upper_median(durations_s);
   const auto usual = [&](std::size_t i) { return duration_s(i) > 0.5 * usual_s && duration_s(i) < 1.5 * usual_s; };
   double rate_rad = 0.0, way_rad = 0.0;
   for (std::size_t i = 2; i < samples.size(); ++i) {
@@ -205,7 +205,7 @@ void PlantConformance::check_motions() {
     report_.skip("velocity", "no joint moved as commanded");
   } else {
     // One short motion shows a rate only roughly, because samples are few; the median of the joints is better.
-    const double middle = median(std::move(velocity_ratios));
+    const double middle = upper_median(velocity_ratios);
     report_.judge("velocity", !rates.empty() || std::abs(middle - 1.0) > profile_.velocity_share,
                   list(rates, velocities, fmt::format("{:.2f} times the rate of the angle, the median", middle)),
                   "velocity_rad_s must be the rate of position_rad: check its sign and unit");

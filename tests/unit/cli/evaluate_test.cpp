@@ -11,6 +11,7 @@
 #include "cli/evaluate/statistics.hpp"
 #include "cli/evaluate/summary.hpp"
 #include "cli/evaluate/variation.hpp"
+#include "configuration/quantiles.hpp"
 #include "constrictor/messages.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -42,12 +43,12 @@ TEST(WilsonInterval, HasThePublishedValues) {
 TEST(Quantile, InterpolatesBetweenTheSortedValues) {
   // numpy.quantile([3, 1, 4, 1, 5, 9, 2, 6], q)
   const std::vector<double> values{3, 1, 4, 1, 5, 9, 2, 6};
-  EXPECT_DOUBLE_EQ(quantile(values, 0.5), 3.5);
-  EXPECT_DOUBLE_EQ(quantile(values, 0.25), 1.75);
-  EXPECT_DOUBLE_EQ(quantile(values, 0.95), 7.95);
-  EXPECT_DOUBLE_EQ(quantile(values, 0), 1);
-  EXPECT_DOUBLE_EQ(quantile(values, 1), 9);
-  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+  EXPECT_DOUBLE_EQ(interpolated_quantile(values, 0.5), 3.5);
+  EXPECT_DOUBLE_EQ(interpolated_quantile(values, 0.25), 1.75);
+  EXPECT_DOUBLE_EQ(interpolated_quantile(values, 0.95), 7.95);
+  EXPECT_DOUBLE_EQ(interpolated_quantile(values, 0), 1);
+  EXPECT_DOUBLE_EQ(interpolated_quantile(values, 1), 9);
+  EXPECT_TRUE(std::isnan(interpolated_quantile({}, 0.5)));
 }
 
 /// The planner's goal was aborted.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 namespace constrictor::cli {
 
@@ -15,9 +14,5 @@ struct Interval {
 /// trial. Source: E. B. Wilson, Probable Inference, the Law of Succession, and Statistical Inference, 1927, without
 /// correction for continuity.
 [[nodiscard]] Interval wilson_interval(std::size_t successes, std::size_t trials);
-
-/// The value below which the share `q` (0 to 1) of the values lies, interpolated linearly between neighbours; NaN if
-/// there is no value. The values need not be sorted.
-[[nodiscard]] double quantile(std::vector<double> values, double q);
 
 }  // namespace constrictor::cli

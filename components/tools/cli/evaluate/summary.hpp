@@ -11,13 +11,14 @@
 #include "cli/evaluate/mission_result.hpp"
 #include "cli/evaluate/statistics.hpp"
 #include "cli/evaluate/variation.hpp"
+#include "configuration/quantiles.hpp"
 
 namespace constrictor::cli {
 
 /// The values of one figure over the runs in which it is known.
 struct Distribution {
   std::vector<double> values;
-  [[nodiscard]] double at(double q) const { return quantile(values, q); }
+  [[nodiscard]] double at(double q) const { return interpolated_quantile(values, q); }
 };
 
 /// The runs of one variant.
