@@ -174,19 +174,16 @@ int main(int argc, char** argv) {
   CLI::App app{"Retrieves the objects as an external planner, red before green."};
   app.add_option("--domain", domain, "DDS domain of the run, as `constrictor run` prints it (default: the only run)")
       ->envname("CONSTRICTOR_DOMAIN");
-  const std::vector<std::string> colours = {"", "green", "red", "blue", "yellow"};
   app.add_option("--order", order, "colours in the order of retrieval, comma separated")
       ->delimiter(',')
-      ->check(CLI::IsMember(colours));
+      ->check(CLI::IsMember(constrictor::names_of(constants::kColour, msg::kColourGreen)));
   app.add_option("--at", at_s, "[s] simulated time at which the planner takes the mission over");
   app.add_option("--after", after, "number of objects that other planners must have delivered before");
   CLI11_PARSE(app, argc, argv);
   std::signal(SIGTERM, [](int) { g_stop = 1; });
   std::signal(SIGINT, [](int) { g_stop = 1; });
   std::vector<std::uint8_t> sequence;
-  for (const auto& colour : order) {
-    sequence.push_back(static_cast<std::uint8_t>(std::find(colours.begin(), colours.end(), colour) - colours.begin()));
-  }
+  for (const auto& colour : order) sequence.push_back(*constrictor::value_of(constants::kColour, colour));
   try {
     return Planner(constrictor::find_domain(domain), std::move(sequence), at_s, after).run();
   } catch (const std::exception& error) {
