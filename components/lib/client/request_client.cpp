@@ -104,7 +104,7 @@ bool RequestClient::connect_to_stop(std::chrono::milliseconds bound) {
 void RequestClient::connect_or_throw(std::chrono::milliseconds bound) {
   if (connect(bound)) return;
   if (interrupted()) throw CommandError("interrupted before a request was sent", CommandError::Cause::kInterrupted);
-  const char* missing = connected() ? "no message on topic \"authority\"" : "no subscriber on topic \"request/v2\"";
+  const char* missing = connected() ? "no message on topic \"authority\"" : "no reader of topic \"request/v2\"";
   throw CommandError(
       fmt::format("run {}: {} (is `input` running? see `constrictor status --run {}`)", domain(), missing, domain()),
       CommandError::Cause::kNoAnswer);

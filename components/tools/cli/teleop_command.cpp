@@ -52,11 +52,19 @@ class Teleop {
 
   /// Why the program had to leave the run; empty: the user left it.
   [[nodiscard]] const std::string& over() const { return monitor_.attachment().over(); }
+  /// Why no request can be sent; empty: requests could be sent.
+  [[nodiscard]] const std::string& missing() const { return missing_; }
   /// The text for the user that describes the authority at the end.
   [[nodiscard]] const std::string& farewell() const { return farewell_; }
 
   int loop() {
-    if (!client_.connect(5s)) return interrupt_signal() != 0 ? interrupt_status() : exit_status::kWaitedTooLong;
+    try {
+      client_.connect_or_throw(5s);
+    } catch (const CommandError& error) {
+      if (error.cause() == CommandError::Cause::kInterrupted) return interrupt_status();
+      missing_ = error.what();
+      return exit_status::kWaitedTooLong;
+    }
     auto drawn = Clock::now() - kRedraw;
     auto heard = Clock::now();
     std::string typed;
@@ -169,6 +177,7 @@ class Teleop {
   ScreenSize drawn_size_{0, 0};
   std::uint64_t number_ = 0;  ///< number of the request that is not answered yet; 0: none
   std::string request_;       ///< the name of this request on the screen
+  std::string missing_;
   std::string farewell_;
 };
 
@@ -180,23 +189,19 @@ int teleop(const TeleopOptions& options) {
   const RunNote run = join_run(options.run);
   int status = exit_status::kOk;
   std::string over;
+  std::string missing;
   std::string farewell;
   {
     Teleop client(run);
     status = client.loop();
     over = client.over();
+    missing = client.missing();
     farewell = client.farewell();
   }
   // The terminal is restored: what is printed now stays on it.
   if (!over.empty()) std::fprintf(stderr, "teleop: %s; the robot holds its posture\n", over.c_str());
-  else if (status == exit_status::kWaitedTooLong) {
-    std::fprintf(stderr,
-                 "teleop: run %u: no subscriber on topic \"request/v2\" (is `input` running? see `constrictor "
-                 "status`)\n",
-                 run.domain);
-  } else if (!farewell.empty()) {
-    fmt::print("teleop: {}\n", farewell);
-  }
+  else if (!missing.empty()) std::fprintf(stderr, "teleop: %s\n", missing.c_str());
+  else if (!farewell.empty()) fmt::print("teleop: {}\n", farewell);
   return status;
 }
 
