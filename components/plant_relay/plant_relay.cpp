@@ -119,12 +119,12 @@ std::string PlantRelay::device_status() const {
 
 std::string PlantRelay::obstacle_of(const msg::HardwareJointState& sample) const {
   if (const std::string fault = printable(text_of(sample.fault)); !fault.empty()) return "hardware: fault: " + fault;
-  const auto patience = static_cast<std::uint64_t>(config_.deaf_after_ticks);
+  const auto patience = static_cast<std::uint64_t>(config_.unconfirmed_after_ticks);
   const bool confirms = sample.command_session == state_.session && sample.command_number + patience >= state_.sent;
   if (state_.sent > patience && !confirms)
     return fmt::format(
-        "hardware: is deaf: command_session and command_number are {:x} and {}, accepted {:x} and one of the last {} "
-        "up to the newest command: does it read hardware/joint_command, and accept a new session?",
+        "hardware: confirms no command: command_session and command_number are {:x} and {}, accepted {:x} and one of "
+        "the last {} up to the newest command: does it read hardware/joint_command, and accept a new session?",
         sample.command_session, sample.command_number, state_.session, patience);
   if (sample.holding && confirms) return "hardware: holds the posture by itself";
   return {};

@@ -14,8 +14,8 @@ struct PlantRelayConfig : PlantParameters {
                           "Time to wait for the first measured posture; without it the run ends");
   int lost_after_ticks = add(lost_after_ticks, "hardware.lost_after_ticks", 5, "ticks", {1, 1000}, kAtStart,
                              "Without an acceptable joint state for so long, the hardware is lost: the robot holds");
-  int deaf_after_ticks = add(deaf_after_ticks, "hardware.deaf_after_ticks", 10, "ticks", {2, 1000}, kAtStart,
-                             "If the hardware confirms no command of the last ticks, it is deaf: the robot holds");
+  int unconfirmed_after_ticks = add(unconfirmed_after_ticks, "hardware.unconfirmed_after_ticks", 10, "ticks", {2, 1000},
+                                    kAtStart, "If the hardware confirms no command of the last ticks, the robot holds");
   int frozen_after_ticks =
       add(frozen_after_ticks, "hardware.frozen_after_ticks", 25, "ticks", {5, 100000}, kAtStart,
           "If all measured angles stay the same for so long although a joint should move, an emergency stop follows");

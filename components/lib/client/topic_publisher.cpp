@@ -166,7 +166,7 @@ int TopicPublisher::readers() {
   return parts_->writer->readers();
 }
 
-std::vector<std::string> TopicPublisher::deaf_readers() const {
+std::vector<std::string> TopicPublisher::mismatched_readers() const {
   dds::Endpoint own;
   own.type = type_;
   own.keyed = parts_->keyed;

@@ -44,7 +44,7 @@ class TopicPublisher {
   /// Creates the writer (the first call), and returns the number of readers that it has matched.
   int readers();
   /// Why readers of the topic cannot receive what this object writes: "control: type: ...", one for each such reader.
-  [[nodiscard]] std::vector<std::string> deaf_readers() const;
+  [[nodiscard]] std::vector<std::string> mismatched_readers() const;
   /// Writes a message; it never blocks. The newest 64 are kept for late readers.
   void write(const std::vector<std::uint8_t>& bytes);
   /// Waits until all reliable readers have what was written. False if they have not within `bound`.

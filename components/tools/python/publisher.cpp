@@ -37,10 +37,10 @@ void Publisher::wait_for_reader(std::optional<double> timeout_s) {
   for (const auto start = WaitClock::now(); readers() == 0;) {
     const std::chrono::duration<double> waited = WaitClock::now() - start;
     if (timeout_s && waited.count() >= *timeout_s) {
-      std::string deaf;
-      for (const auto& reader : parts().publisher.deaf_readers())
-        deaf += fmt::format("; a reader cannot receive from it: {}", reader);
-      throw WaitTimeout(fmt::format("no reader of '{}' within {} s{}", topic_, *timeout_s, deaf));
+      std::string mismatched;
+      for (const auto& reader : parts().publisher.mismatched_readers())
+        mismatched += fmt::format("; a reader cannot receive from it: {}", reader);
+      throw WaitTimeout(fmt::format("no reader of '{}' within {} s{}", topic_, *timeout_s, mismatched));
     }
     bool signal = false;
     {

@@ -116,12 +116,12 @@ TEST_F(Relay, RefusesASecondProcessWhileTheFirstOneWrites) {
   EXPECT_EQ(mode(), GateMode::kObeying);
 }
 
-TEST_F(Relay, HoldsWhileTheHardwareIsDeaf) {
+TEST_F(Relay, HoldsWhileTheHardwareConfirmsNoCommand) {
   hears_ = false;
   follows_ = false;
   command_ = bend(0.5);
   ticks(30);
-  EXPECT_NE(last_refusal().find("hardware: is deaf"), std::string::npos) << last_refusal();
+  EXPECT_NE(last_refusal().find("hardware: confirms no command"), std::string::npos) << last_refusal();
   EXPECT_EQ(mode(), GateMode::kHolding);
   hears_ = follows_ = true;
   ticks(30);

@@ -116,7 +116,8 @@ int show_topic(const TopicOptions& options) {
         if (writer || !other.writer) continue;
         const std::string why = dds::mismatch(other, endpoint);
         if (!why.empty())
-          entry["deaf_to"].push_back(DomainView::name_of(other.participant, participants, endpoints) + ": " + why);
+          entry["cannot_receive_from"].push_back(DomainView::name_of(other.participant, participants, endpoints) +
+                                                 ": " + why);
       }
       list.push_back(entry);
     }
@@ -132,8 +133,8 @@ int show_topic(const TopicOptions& options) {
     for (const auto& entry : json[side]) {
       fmt::print("  {:<20} {}  pid {} on {}\n", entry["node"].get<std::string>(), entry["qos"].get<std::string>(),
                  entry.value("pid", 0), entry.value("host", std::string("?")));
-      if (entry.contains("deaf_to")) {
-        for (const auto& why : entry["deaf_to"])
+      if (entry.contains("cannot_receive_from")) {
+        for (const auto& why : entry["cannot_receive_from"])
           fmt::print("  {:<20} cannot receive from {}\n", "", why.get<std::string>());
       }
     }

@@ -112,7 +112,7 @@ bool wait_for_reader(TopicPublisher& publisher, const DomainView& view, const Pu
     }
     std::fprintf(stderr, "topic: no reader of '%s' in DDS domain %u; nothing was published (--wait 0 does not wait)\n",
                  options.topic.c_str(), view.domain());
-    for (const auto& reader : publisher.deaf_readers())
+    for (const auto& reader : publisher.mismatched_readers())
       std::fprintf(stderr, "  a reader cannot receive from this command: %s\n", reader.c_str());
     return false;
   }
