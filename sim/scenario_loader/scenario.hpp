@@ -32,10 +32,6 @@ struct ScenarioObject {
   [[nodiscard]] double footprint_radius_m() const {
     return shape == BodyShape::kCylinder ? size_m.x() : 0.5 * size_m.head<2>().norm();
   }
-  /// [m] radius of the largest circle about this axis that lies in the footprint.
-  [[nodiscard]] double inner_radius_m() const {
-    return shape == BodyShape::kCylinder ? size_m.x() : 0.5 * size_m.head<2>().minCoeff();
-  }
 };
 
 /// A coloured disc on the ground.

@@ -30,7 +30,6 @@ class EmulatedRobot {
   /// When the next step is due.
   [[nodiscard]] std::int64_t next_step_ns() const { return time_ns_ + step_ns_; }
 
-  [[nodiscard]] std::size_t port_count() const { return lines_.size(); }
   [[nodiscard]] ServoLine& line(std::size_t port) { return *lines_[port]; }
   [[nodiscard]] ServoDevice& servo(std::size_t joint) { return *servos_[joint]; }
   [[nodiscard]] const World& world() const { return world_; }

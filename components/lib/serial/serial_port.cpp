@@ -69,7 +69,7 @@ SerialPort::SerialPort(const std::filesystem::path& device, std::uint32_t baud) 
   serial_struct adapter{};
   if (::ioctl(descriptor_, TIOCGSERIAL, &adapter) == 0) {
     adapter.flags |= ASYNC_LOW_LATENCY;
-    low_latency_ = ::ioctl(descriptor_, TIOCSSERIAL, &adapter) == 0;
+    ::ioctl(descriptor_, TIOCSSERIAL, &adapter);
   }
   drop_input();
 }

@@ -12,7 +12,8 @@ namespace constrictor::serial {
 class SerialPort final : public Port {
  public:
   /// Opens the device for this process alone: 8 bits, no parity, one stop bit, no flow control, and any baud rate that
-  /// the adapter has. Asks the adapter to pass on each byte at once (low latency), if it can. Throws PortError.
+  /// the adapter has. Asks the adapter to pass on each byte at once (low latency), if it can: otherwise an adapter with
+  /// an FTDI chip collects bytes for up to 16 ms. Throws PortError.
   SerialPort(const std::filesystem::path& device, std::uint32_t baud);
   ~SerialPort() override;
 
@@ -21,15 +22,11 @@ class SerialPort final : public Port {
   void drop_input() override;
   [[nodiscard]] std::int64_t now_ns() const override;
   [[nodiscard]] std::uint32_t baud() const override { return baud_; }
-  /// Whether the adapter is in its low-latency mode. Without it, an adapter with an FTDI chip collects bytes for up to
-  /// 16 ms before it passes them on.
-  [[nodiscard]] bool low_latency() const { return low_latency_; }
 
  private:
   std::string name_;
   std::uint32_t baud_;
   int descriptor_ = -1;
-  bool low_latency_ = false;
 };
 
 /// Opens a port that may not be there yet: tries for at most `patience_s`. Throws the last PortError.
