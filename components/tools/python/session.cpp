@@ -257,8 +257,8 @@ std::uint64_t Session::start(const std::string& task, const TaskArguments& given
   if (given.object_handle) request.parameters.object_handle = *given.object_handle;
   for (const auto& [name, number] : given.numbers) {
     const auto rows = task_numbers();
-    const auto row = std::find_if(rows.begin(), rows.end(),
-                                  [&wanted = name](const TaskNumber& r) { return r.info.name == wanted; });
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&wanted = name](const TaskNumber& r) { return r.info.name == wanted; });
     if (row == rows.end()) throw std::invalid_argument("unknown parameter " + name);
     if (!row->accepts(number))
       throw std::invalid_argument(fmt::format("{}: found {}, accepted {}", name, number, row->accepted()));
