@@ -141,7 +141,7 @@ class Summariser {
     for (const auto& [name, count] : gaps_) {
       // Members' topics have been counted above by their numbers.
       const bool of_member = std::any_of(topics::kInfos.begin(), topics::kInfos.end(),
-                                         [&](const TopicInfo& one) { return one.name == name; });
+                                         [&wanted = name](const TopicInfo& one) { return one.name == wanted; });
       const bool is_number = !count.empty() && count.size() < 19 && count.find_first_not_of("0123456789") == count.npos;
       if (of_member || !is_number) continue;
       RecordedTopic& topic = topics_[name];

@@ -147,8 +147,9 @@ std::string draw(figure::Format format, const std::string& title, const std::vec
       {kMargin + 12.0, 46.0}, {12.0, figure::kGreyInk});
   const std::vector<Strip> strips = strips_for(results);
   for (std::size_t k = 0; k < shown.size(); ++k) {
-    const Rect panel{kMargin + static_cast<double>(k % kColumns) * kPanelWidth,
-                     kHeader + static_cast<double>(k / kColumns) * kPanelHeight + 8.0, kPanelWidth, kPanelHeight};
+    const std::size_t column = k % kColumns, row = k / kColumns;
+    const Rect panel{kMargin + static_cast<double>(column) * kPanelWidth,
+                     kHeader + static_cast<double>(row) * kPanelHeight + 8.0, kPanelWidth, kPanelHeight};
     draw_panel(canvas, panel, factors[shown[k]], strips, results[shown[k]]);
   }
   return canvas.finish();

@@ -3,6 +3,8 @@
 // the whole ticks.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+
 #include "barrier/local_run.hpp"
 #include "bench/tick/recorded_steps.hpp"
 #include "bench/undulator.hpp"
@@ -61,7 +63,7 @@ PART(felt_contacts, Part::kContactSums);
 void factorisation(benchmark::State& state) {
   if (refused(state)) return;
   const auto modules = recorded().world().module_count();
-  const auto iterations = static_cast<int>(recorded().iterations_per_tick() + 0.5);
+  const auto iterations = static_cast<int>(std::lround(recorded().iterations_per_tick()));
   std::vector<Matrix6d> stiffness(modules, Matrix6d::Identity());
   std::vector<ChainFactor::Joint> joints(modules - 1, {Vector6d::LinSpaced(0.5, 1.0), 1.0});
   Eigen::VectorXd unknowns(static_cast<Eigen::Index>(modules) + 5);
