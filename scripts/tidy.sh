@@ -9,9 +9,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 if [ "${1:-}" = --help ]; then sed -n '2,7s/^# //p' "$0"; exit 0; fi
 
-# There are no precompiled headers, so that a file that is analysed by itself must include what it uses. Most of the time
-# goes into the headers, which files that are compiled as one share. Such a unit includes .cpp files, which the check for
-# suspicious includes would report.
+# There are no precompiled headers, so that a file that is analysed by itself must include what it uses. Most of the
+# time goes into the headers, which files that are compiled as one share. Such a unit includes .cpp files, which the
+# check for suspicious includes would report.
 if [ $# -gt 0 ]; then
   together=OFF
   options=()

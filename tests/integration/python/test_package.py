@@ -47,7 +47,6 @@ def test_images_are_arrays_of_pixels(run):
     image = run.latest("camera/image", timeout=20)
     pixels = image["data"]
     assert pixels.dtype == np.uint8 and pixels.shape == (image["height"], image["width"], 3)
-
     # The painted line is blue, so in the lower half of an image of it some pixels are much more blue than red. This
     # test is an early one: later, the robot turns away from the line.
     def shows_the_line():
