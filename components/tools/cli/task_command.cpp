@@ -98,7 +98,10 @@ msg::Request request_of(const TaskOptions& options) {
   std::string problem = set_path(request.path, options.path);
   if (!problem.empty()) throw UsageError("--" + problem);
   problem = task_problem(request);
-  if (!problem.empty()) throw UsageError(problem + " (constrictor task start --help)");
+  if (!problem.empty()) {
+    const char* option = *task == msg::kTaskFollowPath ? "--path X,Y X,Y; " : "";
+    throw UsageError(fmt::format("{} ({}constrictor task start --help)", problem, option));
+  }
   return request;
 }
 
