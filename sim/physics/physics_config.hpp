@@ -24,7 +24,7 @@ struct PhysicsConfig : PlantParameters {
           "ode: W of QuickStep"),
       add(solver.erp, "solver.erp", SolverSettings{}.erp, "", {0.0, 1.0}, kAtStart,
           "Share of an error that a step corrects. ode: position of a hinge; chain: angle beyond its limit"),
-      add(solver.cfm, "solver.cfm", SolverSettings{}.cfm, "m/(N s)", {0.0, 0.1}, kAtStart,
+      add(solver.cfm, "solver.cfm", SolverSettings{}.cfm, "m/(N s)", {1e-9, 0.1}, kAtStart,
           "Softness. ode: of the hinges; chain: of the stops at the limits of the joint angles"),
       add(solver.contact_stiffness_n_m, "solver.contact_stiffness_n_m", SolverSettings{}.contact_stiffness_n_m, "N/m",
           {100.0, 1e9}, Changes::kAtStart, "Stiffness of each contact"),

@@ -107,6 +107,7 @@ void ChainDynamics::solve(std::span<const SolverContact> contacts) {
     for (std::size_t i = 0; i < contacts.size(); ++i)
       if (groups_[contacts[i].first] == leader) group_contacts_.push_back(i);
     iterations_ += system_.solve(leader == 0, group_objects_, group_contacts_, settings_.step_s);
+    if (!system_.solved()) ++unsolved_;
   }
 }
 

@@ -30,6 +30,7 @@ class ChainDynamics : public Dynamics {
 
   /// Iterations of Newton's method since the engine was built, for all groups of bodies.
   [[nodiscard]] std::int64_t iterations() const { return iterations_; }
+  [[nodiscard]] std::int64_t unsolved() const override { return unsolved_; }
 
  private:
   struct Inertial {
@@ -74,6 +75,7 @@ class ChainDynamics : public Dynamics {
   std::vector<std::size_t> group_objects_;
   std::vector<std::size_t> group_contacts_;
   std::int64_t iterations_ = 0;
+  std::int64_t unsolved_ = 0;
 };
 
 }  // namespace constrictor

@@ -25,8 +25,7 @@ double ChainSystem::Joint::torque_nm(double rate) const {
 }
 
 double ChainSystem::Joint::slope(double rate) const {
-  double slope = 0.0;
-  if (std::abs(servo.velocity_rad_s - rate) < servo.torque_limit_nm * servo.softness) slope += 1.0 / servo.softness;
+  double slope = servo.slope_nm_s_rad(rate);
   if (stop_side * (stop.velocity_rad_s - rate) > 0.0) slope += 1.0 / stop.softness;
   return slope;
 }
@@ -178,13 +177,16 @@ int ChainSystem::solve(bool with_chain, std::span<const std::size_t> objects, st
   begin(with_chain, objects);
   begin_as_before();
   int iteration = 0;
-  while (evaluate() > kTolerance && iteration < kMostIterations) {
+  double rest = evaluate();
+  while (rest > kTolerance && iteration < kMostIterations) {
     assemble();
     find_step();
     spread();
     move(search());
+    rest = evaluate();
     ++iteration;
   }
+  solved_ = rest <= kTolerance;
   remember_changes();
   return iteration;
 }

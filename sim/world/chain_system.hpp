@@ -77,6 +77,8 @@ class ChainSystem {
   /// each other and what is fixed. `contacts` has the numbers of their contacts. Returns the number of iterations.
   int solve(bool with_chain, std::span<const std::size_t> objects, std::span<const std::size_t> contacts,
             double step_s);
+  /// Whether the last solve() has reached its tolerance. After 50 iterations it ends in any case.
+  [[nodiscard]] bool solved() const { return solved_; }
 
  private:
   /// What has a size that depends on the part of the scene that is solved.
@@ -120,6 +122,7 @@ class ChainSystem {
 
   // The part of the scene that is solved at present.
   double step_s_ = 0.0;
+  bool solved_ = true;
   bool with_chain_ = false;
   bool folded_ = false;  // modules touch modules, so that the matrix is not that of a chain alone
   std::span<const std::size_t> objects_;

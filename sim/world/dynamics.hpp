@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -93,6 +94,10 @@ class Dynamics {
   /// Integrates one step with these servo rows, one for each joint, and these contacts. Throws std::runtime_error if
   /// the engine fails.
   virtual void step(std::span<const ServoRow> rows, std::span<const SolverContact> contacts) = 0;
+
+  /// How often, since the engine was built, a step ended before its equations were solved to the engine's tolerance. An
+  /// engine without a tolerance returns 0.
+  [[nodiscard]] virtual std::int64_t unsolved() const { return 0; }
 
   /// The whole memory between two steps. An engine that is built from equal arguments and loads it continues equally,
   /// bit for bit. The forces of the last step are not part of it.

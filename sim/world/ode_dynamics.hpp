@@ -1,5 +1,6 @@
 // The dynamics by ODE's QuickStep: each module and object is a body with six coordinates, and constraints hold the
-// modules together at their hinges. The velocity motor of a hinge with its softness (CFM) acts as the servo.
+// modules together at their hinges. Two velocity motors with their softness (CFM) act as the servo: that of the hinge
+// exerts the torque of the motor, which has a limit, and a joint beside it that of rotor and gear.
 #pragma once
 
 #include <ode/ode.h>
@@ -21,11 +22,14 @@ class OdeDynamics : public Dynamics {
  private:
   struct Hinge {
     dJointID joint;
+    dJointID rotor;
     dBodyID ahead;
     dJointFeedback feedback{};
+    dJointFeedback rotor_feedback{};
     [[nodiscard]] double measured_torque_nm() const;
   };
 
+  void drive(Hinge& hinge, const ServoRow& row, double rate_rad_s);
   void build(const RigidBody& body);
   void build_hinge(const JointModel& model, std::size_t ahead, double half_length_m);
   void make_contact(const SolverContact& contact, dJointFeedback& feedback);

@@ -7,24 +7,32 @@
 
 namespace constrictor {
 
-/// One row of the solver: the torque on the joint is (velocity_rad_s - w) / softness, where w is the rate of the joint
-/// at the end of the step, but at most torque_limit_nm in either direction.
+/// What the solver knows of a servo in a step: the torque on the joint by the rate w of the joint at the end of the
+/// step. It is the sum of that of the motor, (velocity_rad_s - w) / softness but at most torque_limit_nm in either
+/// direction, and of that of rotor and gear, which has no limit: inertia (free_velocity_rad_s - w).
 struct ServoRow {
   double velocity_rad_s = 0.0;
   double softness = 1.0;  ///< [rad/(s Nm)] > 0
   double torque_limit_nm = 0.0;
+  double free_velocity_rad_s = 0.0;
+  double inertia_nm_s_rad = 0.0;  ///< >= 0: moment of inertia by step, and friction by rate
 
   [[nodiscard]] double torque_nm(double rate_rad_s) const;
+  /// By which the torque falls with the rate.
+  [[nodiscard]] double slope_nm_s_rad(double rate_rad_s) const;
+  /// The rate at which there is no torque.
+  [[nodiscard]] double torque_free_rate_rad_s() const;
 };
 
 /// Equations, with the setpoint r, the motor's angle m (at the output of the gear) and the joint's angle q:
-///   motor:    J m" = kp (r - m) + kd (r' - m') - t
+///   motor:    J m" = u - f - t, u = kp (r - m) + kd (r' - m')
+///   friction: |f| <= the friction of the gear in the robot file, so large that it only slows the motor down
 ///   spring:   t = k e + d e', where e = m - q, less half of the backlash towards 0, is the stretch of the series
 ///             elastic element; t = 0 while m - q is within the backlash; without an elastic element, m = q
 ///   encoder:  the controller reads m (q without an elastic element) with the encoder's resolution
-///   limit:    |t| <= the smallest of the commanded limit and the speed-torque curve
-/// In torque mode the motor's equation is, with the commanded torque u and the friction f of the gear:
-///   motor:    J m" = u - f - t, |f| <= the friction of the robot file, so large that it only slows the motor down
+///   limit:    |u| <= the smaller of the commanded limit and the speed-torque curve; 0 while the servo is relaxed
+/// The torque t on the joint can be larger than the limit: a rotor that is made to turn resists by its inertia.
+/// In torque mode, u is the commanded torque:
 ///   limits:   |u| <= the commanded limit and the speed-torque curve; u never accelerates the motor beyond the joint's
 ///             maximum speed; u is at most what the position controller would exert to stop the joint at its upper
 ///             limit, and at least what it would exert to stop it at its lower limit
@@ -61,11 +69,17 @@ class Servo {
   [[nodiscard]] ServoRow position_row(double reference_rad, double reference_rate_rad_s, double angle_rad,
                                       double rate_rad_s);
   [[nodiscard]] ServoRow torque_row(double angle_rad, double rate_rad_s);
+  /// The row of a motor without current: rotor and friction of the gear.
+  [[nodiscard]] ServoRow relaxed_row(double angle_rad, double rate_rad_s);
+  /// The Coulomb friction of the gear instead of a motor's torque.
+  [[nodiscard]] ServoRow friction_row() const;
+  /// The damping that exerts this friction at this rate, beside a motor: it never reverses the motion.
+  [[nodiscard]] double friction_nm_s_rad(double rate_rad_s) const;
   /// The commanded torque within its limits, minus the friction of the gear, for a motor with this rate.
   [[nodiscard]] double motor_torque_nm(double motor_rate_rad_s) const;
-  /// Puts the spring, if there is one, between the motor and the joint. `row` is that of the motor. False: the gear is
-  /// loose in this step.
-  bool attach(ServoRow& row, double angle_rad, double rate_rad_s);
+  /// The row of the joint from that of the motor: with the spring between them, if there is one. While the gear does
+  /// not touch, there is no torque.
+  [[nodiscard]] ServoRow attached(const ServoRow& motor, double angle_rad, double rate_rad_s);
   /// Stretch of the elastic element at the beginning of the step, on the side of the backlash on which the gear will
   /// touch at its end; 0 while the gear does not touch there yet.
   [[nodiscard]] double stretch_rad(double angle_rad) const;

@@ -24,7 +24,19 @@ JointModel read_joint(Configuration& joints) {
   joint.velocity_gain_nm_s_rad = joints.number("velocity_gain_nm_s_rad", {0.0, 1000.0});
   joint.rotor_inertia_kg_m2 = joints.number("rotor_inertia_kg_m2", {0.0, 10.0}, 0.0);
   joint.gear_friction_nm = joints.number("gear_friction_nm", {0.0, 100.0}, 0.0);
+  if (joint.gear_friction_nm >= joint.max_torque_nm) {
+    throw joints.error(
+        "gear_friction_nm",
+        fmt::format("found {} Nm, accepted less than max_torque_nm ({} Nm): the motor would turn nothing",
+                    joint.gear_friction_nm, joint.max_torque_nm));
+  }
   joint.no_load_speed_rad_s = joints.number("no_load_speed_rad_s", {0.0, 100.0}, 0.0);
+  if (joint.no_load_speed_rad_s > 0.0 && joint.no_load_speed_rad_s < joint.max_speed_rad_s) {
+    throw joints.error("no_load_speed_rad_s",
+                       fmt::format("found {} rad/s, accepted 0 (torque does not fall with speed), or at least "
+                                   "max_speed_rad_s ({} rad/s), at which the motor must still turn",
+                                   joint.no_load_speed_rad_s, joint.max_speed_rad_s));
+  }
   joint.stiffness_nm_rad = joints.number("stiffness_nm_rad", {0.0, 10000.0}, 0.0);
   joint.damping_nm_s_rad = joints.number("damping_nm_s_rad", {0.0, 100.0}, 0.0);
   if (joint.stiffness_nm_rad == 0.0 && joint.damping_nm_s_rad > 0.0) {

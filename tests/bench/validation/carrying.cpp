@@ -132,6 +132,7 @@ CarryingMeasurement measure_carrying(const RobotModel& robot, const SolverSettin
   }
   found.torque_rms_nm = std::sqrt(torque_squares / static_cast<double>(yaw.size() * ticks));
   found.slip_m = (object_in_bend() - held_m).norm();
+  found.unsolved = world.dynamics().unsolved();
   return found;
 }
 

@@ -2,6 +2,8 @@
 // which the solver converges least.
 #pragma once
 
+#include <cstdint>
+
 #include "bench/validation/gait_run.hpp"
 #include "control/control_config.hpp"
 
@@ -13,6 +15,7 @@ struct CarryingMeasurement {
   double base_torque_nm = 0.0;  ///< mean of the joints that press on the object
   double object_force_n = 0.0;  ///< mean sum of the forces on the object
   double joint_gap_m = 0.0;     ///< largest
+  std::int64_t unsolved = 0;    ///< steps whose equations were not solved to the engine's tolerance
   double slip_m = 0.0;          ///< how far the object has moved in the frame of the middle of the bend
 };
 

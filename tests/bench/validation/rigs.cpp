@@ -49,6 +49,7 @@ Swing swing_head(double amplitude_rad, double duration_s, const SolverSettings& 
     joint.position_gain_nm_rad *= 100.0;
     joint.velocity_gain_nm_s_rad *= 10.0;
   }
+  robot.joints[0].rotor_inertia_kg_m2 = kSwingingRotor_kg_m2;
   World world(robot, beyond_an_edge(robot, JointAxis::kPitch, 3), settings);
   const std::size_t n = world.joint_count();
   std::vector<double> angles(n, 0.0);
@@ -72,6 +73,7 @@ Swing swing_head(double amplitude_rad, double duration_s, const SolverSettings& 
     swing.angle_rad.push_back(std::atan2(forward.x(), -forward.z()));
     swing.energy_j.push_back(0.5 * mass * world.module_velocity_m_s(0).squaredNorm() +
                              0.5 * inertia * world.module_angular_velocity_rad_s(0).squaredNorm() +
+                             0.5 * kSwingingRotor_kg_m2 * std::pow(world.joint_rate_rad_s(0), 2) +
                              mass * kG * X_WH.translation().z());
   };
   while (world.time_s() - begin_s < duration_s) world.advance(kPeriod_s, record);

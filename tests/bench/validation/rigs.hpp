@@ -21,11 +21,14 @@ namespace constrictor::validation {
 /// The robot of this name (components/lib/robot/NAME.yaml).
 [[nodiscard]] inline RobotModel robot_file(const std::string& name) { return load_robot(testing::robot_path(name)); }
 
+/// [kg m²] of the rotor that the head turns with it when it swings: about its own inertia about the joint.
+inline constexpr double kSwingingRotor_kg_m2 = 0.001;
+
 /// A head that swings.
 struct Swing {
   std::vector<double> time_s;
   std::vector<double> angle_rad;  ///< from the vertical
-  std::vector<double> energy_j;   ///< of the head, kinetic and potential
+  std::vector<double> energy_j;   ///< of the head and its rotor, kinetic and potential
 
   /// Mean time between two passages through the vertical in the same direction; NaN if there are fewer than two.
   [[nodiscard]] double period_s() const;

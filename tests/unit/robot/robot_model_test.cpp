@@ -108,6 +108,12 @@ TEST(RobotModel, ErrorNamesTheMistake) {
             "joints.axes[1]: found roll, accepted one of yaw, pitch");
   EXPECT_EQ(error_of_changed_file("axes: [yaw, pitch]", "axes: []"),
             "joints.axes: found a list of 0, accepted a list of yaw and pitch");
+  EXPECT_EQ(
+      error_of_changed_file("max_torque_nm: 6.0", "gear_friction_nm: 6\n  max_torque_nm: 6.0"),
+      "joints.gear_friction_nm: found 6 Nm, accepted less than max_torque_nm (6 Nm): the motor would turn nothing");
+  EXPECT_EQ(error_of_changed_file("max_torque_nm: 6.0", "no_load_speed_rad_s: 3\n  max_torque_nm: 6.0"),
+            "joints.no_load_speed_rad_s: found 3 rad/s, accepted 0 (torque does not fall with speed), or at least "
+            "max_speed_rad_s (4 rad/s), at which the motor must still turn");
   EXPECT_EQ(error_of_changed_file("max_torque_nm: 6.0", "damping_nm_s_rad: 1\n  max_torque_nm: 6.0"),
             "joints.damping_nm_s_rad: found damping without stiffness_nm_rad, accepted 0 for a stiff joint");
   EXPECT_EQ(error_of_changed_file("max_torque_nm: 6.0", "backlash_rad: 0.01\n  max_torque_nm: 6.0"),

@@ -31,6 +31,8 @@ void expect_alike(const Pair& pair) {
   EXPECT_NEAR(pair.usual.speed_m_s, pair.fine.speed_m_s, kMostSpeedError * pair.fine.speed_m_s);
   EXPECT_NEAR(pair.usual.torque_rms_nm, pair.fine.torque_rms_nm, kMostForceError * pair.fine.torque_rms_nm);
   EXPECT_LT(pair.usual.joint_gap_m, kMostGap_m);
+  EXPECT_EQ(pair.usual.unsolved, 0);
+  EXPECT_EQ(pair.fine.unsolved, 0);
   EXPECT_LT(pair.fine.slip_m, 0.02) << "the object stays in the bend";
 }
 

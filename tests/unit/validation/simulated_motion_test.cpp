@@ -23,7 +23,7 @@ TEST(SimulatedMotion, AHeadThatSwingsOnARobotOnTheGroundKeepsPeriodAndEnergy) {
   const double lever_m = 0.5 * robot.module_length_m;  // from the pivot to the centre of mass
   const double moment_nm = robot.module_mass_kg * kG * lever_m;
   const double inertia_kg_m2 = capsule_inertia(robot.module_mass_kg, robot.module_radius_m, robot.module_length_m) +
-                               robot.module_mass_kg * lever_m * lever_m;
+                               robot.module_mass_kg * lever_m * lever_m + kSwingingRotor_kg_m2;
   const double period_s =
       4.0 * std::sqrt(inertia_kg_m2 / moment_nm) * std::comp_ellint_1(std::sin(0.5 * kAmplitude_rad));
   const SolverSettings settings;

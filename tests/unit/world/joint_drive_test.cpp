@@ -72,7 +72,7 @@ TEST_P(JointDrive, AnElasticJointSagsByTorqueOverStiffness) {
   for (JointModel& joint : robot.joints) joint.stiffness_nm_rad = 3.0;
   for (JointModel& joint : robot.joints) joint.damping_nm_s_rad = 0.05;
   World world(robot, {}, settings());
-  lift_head(world, 6.0, 200);
+  lift_head(world, 6.0, 800);  // the whole body yields, and creeps to its last posture
   const double torque = lifted_head_torque(world);
   EXPECT_LT(torque, -0.05);
   EXPECT_NEAR(world.joint(0).motor_angle_rad() - world.joint_angle_rad(0), torque / 3.0, 0.03 * std::abs(torque) / 3.0);
@@ -89,7 +89,9 @@ TEST_P(JointDrive, AJointNeverExceedsItsTorqueLimit) {
 }
 
 TEST_P(JointDrive, ARelaxedJointExertsNoTorque) {
-  World world(mamba(), {}, settings());
+  RobotModel robot = mamba();
+  for (JointModel& joint : robot.joints) joint.rotor_inertia_kg_m2 = 0.0;  // a rotor resists acceleration
+  World world(robot, {}, settings());
   hold(world, 0.0, 0.0, 1.0);
   for (std::size_t i = 0; i < 23; ++i) EXPECT_NEAR(world.joint_torque_nm(i), 0.0, 1e-6);
 }

@@ -19,16 +19,16 @@ struct Joint {
 
   void step() {
     const ServoRow row = servo.row(angle_rad, rate_rad_s);
-    // The row is implicit: w = w0 + h (velocity - w) / (softness I) + h load / I, unless the torque is at its limit.
-    const double free = rate_rad_s + kStep_s * load_nm / inertia_kg_m2;
-    const double share = kStep_s / (row.softness * inertia_kg_m2);
-    double after = (free + share * row.velocity_rad_s) / (1.0 + share);
-    torque_nm = (after - free) * inertia_kg_m2 / kStep_s;
-    if (std::abs(torque_nm) > row.torque_limit_nm) {
-      torque_nm = std::copysign(row.torque_limit_nm, torque_nm);
-      after = free + kStep_s * torque_nm / inertia_kg_m2;
-      if (row.velocity_rad_s == 0.0 && free * after < 0.0) after = 0.0;
+    // The row is implicit: I (w - w0) / h = load + row.torque_nm(w). The right side falls with w, so that halving finds
+    // w.
+    double low = rate_rad_s - 1e4, high = rate_rad_s + 1e4;
+    for (int i = 0; i < 200 && low < high; ++i) {
+      const double middle = 0.5 * (low + high);
+      const double excess_nm = load_nm + row.torque_nm(middle) - inertia_kg_m2 * (middle - rate_rad_s) / kStep_s;
+      (excess_nm > 0.0 ? low : high) = middle;
     }
+    const double after = 0.5 * (low + high);
+    torque_nm = row.torque_nm(after);
     const double before = angle_rad;
     rate_rad_s = after;
     angle_rad += kStep_s * rate_rad_s;

@@ -93,6 +93,18 @@ TEST(ServoTorque, TheFrictionOfTheGearIsOvercomeAndThenSubtracted) {
   EXPECT_NEAR(pushed.rate_rad_s, 0.0, 1e-3) << "friction alone stops the joint, and does not turn it round";
 }
 
+TEST(ServoTorque, TheFrictionOfAGearWithoutARotorBrakesTheJoint) {
+  JointModel rough = testing::usual_joint();
+  rough.gear_friction_nm = 0.5;
+  rough.rotor_inertia_kg_m2 = 0.0;
+  Joint joint(rough, 0.04);
+  joint.rate_rad_s = 2.0;
+  for (int i = 0; i < 5; ++i) joint.tick(torque(0.0));
+  EXPECT_NEAR(joint.rate_rad_s, 2.0 - 0.5 / 0.04 * 5 * kTick_s, 1e-6);
+  for (int i = 0; i < 20; ++i) joint.tick(torque(0.0));
+  EXPECT_NEAR(joint.rate_rad_s, 0.0, 1e-3);
+}
+
 TEST(ServoTorque, ASeriesSpringPassesTheTorqueOn) {
   JointModel elastic = testing::usual_joint();
   elastic.stiffness_nm_rad = 60.0;
