@@ -35,6 +35,12 @@ std::string value_text(const T& value) {
   }
 }
 
+/// Unlike ==, this tells 0.0 from -0.0 and takes a NaN for equal to itself. T: a number, or an array of numbers.
+template <class T>
+bool same_bytes(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
+}
+
 /// Visits the fields of `a` and finds the same field of `b` at the same offset.
 template <class Message>
 struct Comparer {
@@ -55,7 +61,7 @@ struct Comparer {
       Comparer<T> inner{left, right, path, {}};
       Description<T>::visit(left, inner);
       found = std::move(inner.found);
-    } else if (std::memcmp(&left, &right, sizeof(T)) != 0) {
+    } else if (!same_bytes(left, right)) {
       found = FieldDifference{path, value_text(left), value_text(right)};
     }
   }
@@ -65,7 +71,10 @@ struct Comparer {
   }
   template <class T, std::size_t N>
   void operator()(const FieldInfo& info, const T (&values)[N]) {
-    if (found || (!Described<T> && std::memcmp(values, twin(values), sizeof(values)) == 0)) return;
+    if (found) return;
+    if constexpr (!Described<T>) {
+      if (same_bytes(values, twin(values))) return;
+    }
     for (std::size_t i = 0; i < N && !found; ++i) {
       compare(join_path(prefix, info.name) + "[" + std::to_string(i) + "]", values[i], twin(values[i]));
     }

@@ -1,4 +1,5 @@
 // Lens and mount from drawn pictures of a board, whose camera is known.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>

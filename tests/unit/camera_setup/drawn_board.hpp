@@ -33,8 +33,10 @@ class BoardPainter {
   explicit BoardPainter(const video::CameraCalibration& camera) : width_(camera.width), height_(camera.height) {
     for (int row = 0; row < height_; ++row) {
       for (int column = 0; column < width_; ++column) {
-        for (int i = 0; i < kRays * kRays; ++i)
-          rays_.push_back(ray_of(camera, column + (i % kRays + 0.5) / kRays, row + (i / kRays + 0.5) / kRays));
+        for (int i = 0; i < kRays * kRays; ++i) {
+          const int right = i % kRays, down = i / kRays;
+          rays_.push_back(ray_of(camera, column + (right + 0.5) / kRays, row + (down + 0.5) / kRays));
+        }
       }
     }
   }
