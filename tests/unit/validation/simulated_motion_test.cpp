@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bench/validation/gait_run.hpp"
+#include "bench/validation/planar_model.hpp"
 #include "bench/validation/rigs.hpp"
 
 namespace constrictor::validation {
@@ -34,6 +35,21 @@ TEST(SimulatedMotion, AHeadThatSwingsOnARobotOnTheGroundKeepsPeriodAndEnergy) {
   const auto span = static_cast<std::size_t>(std::lround(period_s / settings.step_s));
   const std::size_t last = swing.energy_j.size();
   EXPECT_NEAR(mean_energy(swing, last - span, last, whole_j), mean_energy(swing, 0, span, whole_j), 0.01);
+}
+
+// The whole engine, not the law of a contact alone: with an ellipse as the bound on the friction, the gait moves and
+// works as in the planar model, which shares no code with it.
+TEST(SimulatedMotion, WithEllipticFrictionTheGaitAgreesWithThePlanarModel) {
+  const RobotModel robot = mamba();
+  const LateralUndulation gait;
+  SolverSettings elliptic;
+  elliptic.elliptic_friction = true;
+  const PlanarModel model(planar_robot(robot, FrictionPlaces::kModuleEnds),
+                          {FrictionLaw::kEllipse, robot.friction_along, robot.friction_across});
+  const PlanarMeasurement planar = measure_planar(model, gait, 3, 2);
+  const GaitMeasurement simulated = measure_gait(robot, lateral_gait(robot, gait), elliptic, 3);
+  EXPECT_NEAR(simulated.speed_m_s, planar.speed_m_s, 0.03 * planar.speed_m_s);
+  EXPECT_NEAR(simulated.friction_j / simulated.duration_s, planar.power_w, 0.03 * planar.power_w);
 }
 
 // The points that touch the ground do not slip across the body in this gait. The forces with which they hold each other
