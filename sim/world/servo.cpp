@@ -9,8 +9,7 @@ namespace {
 
 /// Below this rate the friction of a gear falls with the rate, so that a joint creeps instead of sticking.
 constexpr double kCreep_rad_s = 0.005;
-/// A torque is a row only with some damping or inertia: so little that it does not show.
-constexpr double kLeastDamping_nm_s_rad = 1e-9;
+/// A torque is a row only with some inertia: so little that it does not show.
 constexpr double kLeastInertia_kg_m2 = 1e-9;
 
 }  // namespace
@@ -119,14 +118,12 @@ ServoRow Servo::position_row(double reference_rad, double reference_rate_rad_s, 
   // The spring kp pulls from the angle at the beginning of the step. That is stable if the damping is at least
   // h kp / 2, and the damping of usual servos is far larger. From the angle at the end of the step, the spring would
   // add a damping of h kp, which no servo has.
-  const double damping = std::max({kd, 0.5 * h * kp, kLeastDamping_nm_s_rad});
+  const double sum = inertia + std::max(kd, 0.5 * h * kp) + friction_nm_s_rad(rate);
   const double wanted_rate = std::clamp(reference_rate_rad_s, -model_.max_speed_rad_s, model_.max_speed_rad_s);
   ServoRow motor;
-  motor.softness = 1.0 / damping;
-  motor.velocity_rad_s = (kp * (reference_rad - angle) + kd * wanted_rate) / damping;
+  motor.softness = 1.0 / sum;
+  motor.velocity_rad_s = (inertia * rate + kp * (reference_rad - angle) + kd * wanted_rate) / sum;
   motor.torque_limit_nm = torque_limit_nm(rate, motor.velocity_rad_s - rate);
-  motor.inertia_nm_s_rad = inertia + friction_nm_s_rad(rate);
-  if (motor.inertia_nm_s_rad > 0.0) motor.free_velocity_rad_s = inertia * rate / motor.inertia_nm_s_rad;
   return attached(motor, angle_rad, rate_rad_s);
 }
 

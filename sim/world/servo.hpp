@@ -8,8 +8,9 @@
 namespace constrictor {
 
 /// What the solver knows of a servo in a step: the torque on the joint by the rate w of the joint at the end of the
-/// step. It is the sum of that of the motor, (velocity_rad_s - w) / softness but at most torque_limit_nm in either
-/// direction, and of that of rotor and gear, which has no limit: inertia (free_velocity_rad_s - w).
+/// step. It is the sum of a part with a limit, (velocity_rad_s - w) / softness but at most torque_limit_nm in either
+/// direction, and of a part without one, inertia (free_velocity_rad_s - w). Under position control the rotor belongs to
+/// the part with the limit, otherwise to the other one.
 struct ServoRow {
   double velocity_rad_s = 0.0;
   double softness = 1.0;  ///< [rad/(s Nm)] > 0
@@ -30,9 +31,8 @@ struct ServoRow {
 ///   spring:   t = k e + d e', where e = m - q, less half of the backlash towards 0, is the stretch of the series
 ///             elastic element; t = 0 while m - q is within the backlash; without an elastic element, m = q
 ///   encoder:  the controller reads m (q without an elastic element) with the encoder's resolution
-///   limit:    |u| <= the smaller of the commanded limit and the speed-torque curve; 0 while the servo is relaxed
-/// The torque t on the joint can be larger than the limit: a rotor that is made to turn resists by its inertia.
-/// In torque mode, u is the commanded torque:
+///   limit:    |u - f - J m"| <= the smaller of the commanded limit and the speed-torque curve
+/// While the servo is relaxed, u = 0, and rotor and friction have no limit. In torque mode, u is the commanded torque:
 ///   limits:   |u| <= the commanded limit and the speed-torque curve; u never accelerates the motor beyond the joint's
 ///             maximum speed; u is at most what the position controller would exert to stop the joint at its upper
 ///             limit, and at least what it would exert to stop it at its lower limit

@@ -131,24 +131,6 @@ TEST(Servo, ARelaxedJointTurnsItsRotor) {
   }
 }
 
-// Far behind its setpoint, the motor exerts its limit. Rotor and friction of the gear act beside it.
-TEST(Servo, AMotorAtItsLimitTurnsRotorAndJointAgainstTheFriction) {
-  for (const double stiffness_nm_rad : {0.0, 60.0}) {
-    JointModel rough = model();
-    rough.max_rad = 100.0;
-    rough.gear_friction_nm = 0.2;
-    rough.stiffness_nm_rad = stiffness_nm_rad;
-    rough.damping_nm_s_rad = 0.5;
-    Joint joint(rough, 0.02);
-    for (int i = 0; i < 20; ++i) joint.tick({90.0, 0.0, 0.8});
-    const double begin_rad_s = joint.rate_rad_s;
-    for (int i = 0; i < 20; ++i) joint.tick({90.0, 0.0, 0.8});
-    const double acceleration = (joint.rate_rad_s - begin_rad_s) / (20 * kTick_s);
-    const double expected = (0.8 - 0.2) / (0.02 + rough.rotor_inertia_kg_m2);
-    EXPECT_NEAR(acceleration, expected, 0.03 * expected) << stiffness_nm_rad;
-  }
-}
-
 TEST(Servo, TheFrictionOfTheGearBrakesADrivenJoint) {
   JointModel rough = model();
   rough.gear_friction_nm = 0.4;
@@ -208,23 +190,14 @@ TEST(Servo, AJointOnItsSpringSwingsAndDecaysAsTheEquationSays) {
   }
 }
 
-TEST(Servo, ASpringTransmitsWhatTheMotorExertsAndWhatItsRotorNeeds) {
-  JointModel without_rotor = elastic_model();
-  without_rotor.rotor_inertia_kg_m2 = 0.0;
-  Joint light(without_rotor);
-  light.load_nm = 1.2;
+TEST(Servo, ASpringNeverTransmitsMoreThanTheTorqueLimit) {
+  Joint joint(elastic_model());
+  joint.load_nm = 1.2;
   for (int i = 0; i < 50; ++i) {
-    light.tick({0.0, 0.0, 1.0});
-    EXPECT_LE(std::abs(light.torque_nm), 1.0 + 1e-9);
+    joint.tick({0.0, 0.0, 1.0});
+    EXPECT_LE(std::abs(joint.torque_nm), 1.0 + 1e-9);
   }
-  EXPECT_GT(light.angle_rad, 0.5);  // the load wins
-
-  // Load and limit pull at two masses and the spring between them: once its swing has died away, both accelerate alike.
-  Joint heavy(elastic_model(), 0.02);
-  heavy.load_nm = 1.2;
-  for (int i = 0; i < 100; ++i) heavy.tick({0.0, 0.0, 1.0});
-  const double rotor = model().rotor_inertia_kg_m2;
-  EXPECT_NEAR(heavy.torque_nm, -(1.0 * 0.02 + 1.2 * rotor) / (0.02 + rotor), 0.01);
+  EXPECT_GT(joint.angle_rad, 0.5);  // the load wins
 }
 
 TEST(Servo, BacklashLagsByHalfOfThePlayInTheDirectionOfMotion) {
