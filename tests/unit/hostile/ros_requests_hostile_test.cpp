@@ -72,6 +72,8 @@ TEST(HostileRosBridge, DiagnosticsOfAbsurdStatusesStayBounded) {
     msg::ComponentStatus status{};
     Description<msg::ComponentStatus>::visit(status, filler);
     health.take(status);
+    // A report lists all members, and costs as much as taking many messages.
+    if (i >= 2000 && i % 50 != 0) continue;
     const auto report = health.report({});
     ASSERT_LE(report.status._length, msg::kMaxMembers + 2) << "a stranger must not fill the memory";
     for (std::uint32_t k = 0; k < report.status._length; ++k) {
