@@ -144,35 +144,19 @@ void OdeDynamics::make_contact(const SolverContact& contact, dJointFeedback& fee
   dJointSetFeedback(joint, &feedback);
 }
 
-// QuickStep converges faster with one row than with two at the same hinge. One is enough while the motor is not at its
-// limit.
-void OdeDynamics::drive(Hinge& hinge, const ServoRow& row, double rate_rad_s) {
-  const double inertia = row.inertia_nm_s_rad;
-  const double width_rad_s = row.torque_limit_nm * row.softness;  // of the rates at which the motor is not at its limit
-  const bool one = std::abs(row.velocity_rad_s - rate_rad_s) < width_rad_s;
-  const auto set_hinge = [&](double velocity_rad_s, double softness, double torque_limit_nm) {
-    dJointSetHingeParam(hinge.joint, dParamVel, velocity_rad_s);
-    dJointSetHingeParam(hinge.joint, dParamCFM, softness);
-    dJointSetHingeParam(hinge.joint, dParamFMax, torque_limit_nm);
-  };
-  if (one) {
-    const double both = inertia + 1.0 / row.softness;
-    const double velocity_rad_s = (inertia * row.free_velocity_rad_s + row.velocity_rad_s / row.softness) / both;
-    set_hinge(velocity_rad_s, 1.0 / both,
-              std::max(std::abs(row.torque_nm(row.velocity_rad_s - width_rad_s)),
-                       std::abs(row.torque_nm(row.velocity_rad_s + width_rad_s))));
-  } else {
-    set_hinge(row.velocity_rad_s, row.softness, row.torque_limit_nm);
-  }
-  const bool two = !one && inertia > 0.0;
+void OdeDynamics::drive(Hinge& hinge, const ServoRow& row) {
+  dJointSetHingeParam(hinge.joint, dParamVel, row.velocity_rad_s);
+  dJointSetHingeParam(hinge.joint, dParamCFM, row.softness);
+  dJointSetHingeParam(hinge.joint, dParamFMax, row.torque_limit_nm);
+  const bool turns = row.inertia_nm_s_rad > 0.0;
   dJointSetAMotorParam(hinge.rotor, dParamVel, row.free_velocity_rad_s);
-  dJointSetAMotorParam(hinge.rotor, dParamCFM, two ? 1.0 / inertia : 1.0);
-  dJointSetAMotorParam(hinge.rotor, dParamFMax, two ? dInfinity : 0.0);
-  if (!two) hinge.rotor_feedback = {};  // ODE leaves it as it was
+  dJointSetAMotorParam(hinge.rotor, dParamCFM, turns ? 1.0 / row.inertia_nm_s_rad : 1.0);
+  dJointSetAMotorParam(hinge.rotor, dParamFMax, turns ? dInfinity : 0.0);
+  if (!turns) hinge.rotor_feedback = {};  // ODE leaves it as it was
 }
 
 void OdeDynamics::step(std::span<const ServoRow> rows, std::span<const SolverContact> contacts) {
-  for (std::size_t i = 0; i < hinges_.size(); ++i) drive(hinges_[i], rows[i], rates_rad_s_[i]);
+  for (std::size_t i = 0; i < hinges_.size(); ++i) drive(hinges_[i], rows[i]);
   for (std::size_t i = 0; i < handles_.size(); ++i) {
     const auto& [force_n, torque_nm] = external_[i];
     dBodyAddForce(handles_[i], force_n.x(), force_n.y(), force_n.z());

@@ -1,6 +1,6 @@
 // The dynamics by ODE's QuickStep: each module and object is a body with six coordinates, and constraints hold the
 // modules together at their hinges. Two velocity motors with their softness (CFM) act as the servo: that of the hinge
-// exerts the torque of the motor, which has a limit, and a joint beside it that of rotor and gear.
+// exerts the part of the torque that has a limit, and a joint beside it the part that has none.
 #pragma once
 
 #include <ode/ode.h>
@@ -29,7 +29,7 @@ class OdeDynamics : public Dynamics {
     [[nodiscard]] double measured_torque_nm() const;
   };
 
-  void drive(Hinge& hinge, const ServoRow& row, double rate_rad_s);
+  void drive(Hinge& hinge, const ServoRow& row);
   void build(const RigidBody& body);
   void build_hinge(const JointModel& model, std::size_t ahead, double half_length_m);
   void make_contact(const SolverContact& contact, dJointFeedback& feedback);

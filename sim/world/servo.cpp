@@ -25,6 +25,7 @@ double ServoRow::slope_nm_s_rad(double rate_rad_s) const {
 }
 
 double ServoRow::torque_free_rate_rad_s() const {
+  if (inertia_nm_s_rad == 0.0) return velocity_rad_s;
   const double rate =
       (inertia_nm_s_rad * free_velocity_rad_s + velocity_rad_s / softness) / (inertia_nm_s_rad + 1.0 / softness);
   const double wanted_nm = (velocity_rad_s - rate) / softness;

@@ -16,7 +16,7 @@ struct ServoRow {
   double softness = 1.0;  ///< [rad/(s Nm)] > 0
   double torque_limit_nm = 0.0;
   double free_velocity_rad_s = 0.0;
-  double inertia_nm_s_rad = 0.0;  ///< >= 0: moment of inertia by step, and friction by rate
+  double inertia_nm_s_rad = 0.0;  ///< >= 0: moment of inertia by step
 
   [[nodiscard]] double torque_nm(double rate_rad_s) const;
   /// By which the torque falls with the rate.

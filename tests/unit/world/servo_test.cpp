@@ -13,6 +13,14 @@
 namespace constrictor {
 namespace {
 
+// A motor beyond its no-load speed has the limit 0.
+TEST(ServoRow, WithoutATorqueTheRateIsThatOfTheMotorWhateverTheLimit) {
+  for (int i = 1; i < 1000; ++i) {
+    const ServoRow row{0.37 * i, 1.0 / (0.013 * i), 0.0, 0.0, 0.0};
+    EXPECT_EQ(row.torque_free_rate_rad_s(), 0.37 * i);
+  }
+}
+
 TEST(Servo, SagsByTheLoadOverThePositionGain) {
   Joint joint(model());
   joint.load_nm = 2.0;
