@@ -15,6 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from arguments import whole  # noqa: E402  tests/bench/arguments.py
+from ending import end_in_order  # noqa: E402  tests/bench/ending.py
 
 CONDITIONS = {
     "quiet": "all cores, nothing else started",
@@ -65,13 +66,7 @@ def run_once(command, arguments, folder, condition):
         try:
             run.wait(PATIENCE_S)
         finally:
-            if run.poll() is None:
-                run.send_signal(signal.SIGINT)
-                try:
-                    run.wait(LEAVE_S)
-                except subprocess.TimeoutExpired:
-                    run.kill()
-                    run.wait()
+            end_in_order(run, LEAVE_S)
     try:
         report = json.loads((folder / "report" / "report.json").read_text(encoding="utf-8"))
         simulated_s = report["sim_time_s"]

@@ -9,7 +9,6 @@ Usage: measure.py [--command FILE] [--launches N]
 import argparse
 import json
 import os
-import signal
 import statistics
 import subprocess
 import sys
@@ -19,6 +18,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from arguments import whole  # noqa: E402  tests/bench/arguments.py
+from ending import end_in_order  # noqa: E402  tests/bench/ending.py
 
 ROOT = Path(__file__).resolve().parents[3]
 PATIENCE_S = 60  # for the first motion, and for the end of the run
@@ -42,13 +42,7 @@ def launch(command):
                     time.sleep(0.002)
                 taken_s = time.monotonic() - begin
             finally:
-                if run.poll() is None:
-                    run.send_signal(signal.SIGINT)
-                try:
-                    run.wait(PATIENCE_S)
-                except subprocess.TimeoutExpired:
-                    run.kill()
-                    run.wait()
+                end_in_order(run, PATIENCE_S)
     return taken_s
 
 
