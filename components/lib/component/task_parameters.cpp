@@ -112,6 +112,11 @@ std::string path_refusal(std::uint8_t task, const msg::Path& path) {
   return path.point_count > 0 ? "path: accepted with follow_path only" : "";
 }
 
+std::string request_refusal(const msg::Request& request) {
+  const std::string path = path_refusal(request.task, request.path);
+  return path.empty() ? task_parameter_refusal(request.task, request.parameters, request.path) : path;
+}
+
 std::vector<TaskParameter> task_parameters_of(std::uint8_t task) {
   std::vector<TaskParameter> parameters;
   for (const Row& row : kNeeds) {

@@ -23,6 +23,9 @@ namespace constrictor {
 /// follows none. Empty if it can. `input` ignores the path of a task that follows none.
 [[nodiscard]] std::string path_refusal(std::uint8_t task, const msg::Path& path);
 
+/// For the same clients: why the task of this request cannot start with its path and its parameters. Empty if it can.
+[[nodiscard]] std::string request_refusal(const msg::Request& request);
+
 /// A parameter that a task needs or uses, for programs that ask people for it.
 struct TaskParameter {
   std::string name;                 ///< of set_task_parameter(), or "path"

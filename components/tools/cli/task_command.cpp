@@ -23,6 +23,7 @@
 #include "client/goal_tracker.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "component/task_parameters.hpp"
 #include "configuration/closest_name.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"
@@ -97,7 +98,7 @@ msg::Request request_of(const TaskOptions& options) {
   }
   std::string problem = set_path(request.path, options.path);
   if (!problem.empty()) throw UsageError("--" + problem);
-  problem = task_problem(request);
+  problem = request_refusal(request);
   if (!problem.empty()) {
     const char* option = *task == msg::kTaskFollowPath ? "--path X,Y X,Y; " : "";
     throw UsageError(fmt::format("{} ({}constrictor task start --help)", problem, option));

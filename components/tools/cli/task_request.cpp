@@ -4,14 +4,8 @@
 
 #include "client/goal_tracker.hpp"
 #include "client/task_names.hpp"
-#include "component/task_parameters.hpp"
 
 namespace constrictor::cli {
-
-std::string task_problem(const msg::Request& request) {
-  const std::string path = path_refusal(request.task, request.path);
-  return path.empty() ? task_parameter_refusal(request.task, request.parameters, request.path) : path;
-}
 
 std::string goal_text(std::uint64_t goal) {
   if (goal_level(goal) == msg::kAuthorityOperator) return std::to_string(goal_number(goal));

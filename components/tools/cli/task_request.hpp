@@ -1,4 +1,4 @@
-// Task requests and goals as people and scripts write and read them.
+// Goals as people and scripts read them.
 #pragma once
 
 #include <cstdint>
@@ -7,9 +7,6 @@
 #include "constrictor/messages.hpp"
 
 namespace constrictor::cli {
-
-/// Why this task request can never be carried out, for example "rotate needs ..."; empty if the request is complete.
-std::string task_problem(const msg::Request& request);
 
 /// A goal as text for people: the number that its source gave it, "3". If the source is not an operator, its level is
 /// added: "3 (planner)".

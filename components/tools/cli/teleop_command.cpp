@@ -10,7 +10,6 @@
 #include "cli/interrupt.hpp"
 #include "cli/operator.hpp"
 #include "cli/subcommands.hpp"
-#include "cli/task_request.hpp"
 #include "cli/teleop_drive.hpp"
 #include "cli/teleop_request.hpp"
 #include "cli/teleop_screen.hpp"
@@ -19,6 +18,7 @@
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "component/task_parameters.hpp"
 #include "robot/drive_motion.hpp"
 #include "runtime/host.hpp"
 
@@ -142,7 +142,7 @@ class Teleop {
       msg::Request request = task_request(msg::kTaskNone);
       number_ = 0;
       screen_.notice = parse_task(*screen_.prompt, request.task, request.parameters, request.path);
-      if (screen_.notice.empty()) screen_.notice = task_problem(request);
+      if (screen_.notice.empty()) screen_.notice = request_refusal(request);
       screen_.prompt.reset();
       if (screen_.notice.empty() && !monitor_.attachment().may_send()) screen_.notice = kInputMissing;
       if (!screen_.notice.empty()) return;

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "cli/operator.hpp"
-#include "cli/task_request.hpp"
 #include "client/task_names.hpp"
 #include "component/task_parameters.hpp"
 #include "dashboard/lane.hpp"
@@ -88,7 +87,7 @@ void Driver::check_authority() {
 std::string Driver::task(const std::string& line) {
   msg::Request request = task_request(msg::kTaskNone);
   std::string problem = parse_task(line, request.task, request.parameters, request.path);
-  if (problem.empty()) problem = cli::task_problem(request);
+  if (problem.empty()) problem = request_refusal(request);
   if (!problem.empty()) throw std::invalid_argument(named("task", problem));
   client_.start_goal(request);
   return fmt::format("{} was accepted", task_word(request.task));

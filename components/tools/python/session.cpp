@@ -271,8 +271,7 @@ std::uint64_t Session::start(const std::string& task, const TaskArguments& given
     request.path.y_m[request.path.point_count] = y_m;
     ++request.path.point_count;
   }
-  problem = path_refusal(request.task, request.path);
-  if (problem.empty()) problem = task_parameter_refusal(request.task, request.parameters, request.path);
+  problem = request_refusal(request);
   if (!problem.empty()) throw std::invalid_argument(problem);
   const Turn turn(*this);
   return client().start_goal(request);

@@ -8,6 +8,7 @@
 #include "cli/task_request.hpp"
 #include "cli/usage.hpp"
 #include "client/task_names.hpp"
+#include "component/task_parameters.hpp"
 
 namespace constrictor::cli {
 namespace {
@@ -78,14 +79,14 @@ TEST(TaskRequest, AnIncompleteTaskIsRefusedBeforeItIsSent) {
                                  "track_object", "pregrasp", "drop"}) {
     msg::Request request{};
     ASSERT_EQ(parse_task(incomplete, request.task, request.parameters, request.path), "") << incomplete;
-    EXPECT_NE(task_problem(request).find("need"), std::string::npos) << incomplete;
+    EXPECT_NE(request_refusal(request).find("need"), std::string::npos) << incomplete;
   }
   for (const char* complete :
        {"rotate direction=left", "explore direction=forwards", "grasp", "follow_line line_colour=blue",
         "drop drop_zone_colour=red", "follow_path path=0,0;1,0"}) {
     msg::Request request{};
     ASSERT_EQ(parse_task(complete, request.task, request.parameters, request.path), "") << complete;
-    EXPECT_EQ(task_problem(request), "") << complete;
+    EXPECT_EQ(request_refusal(request), "") << complete;
   }
 }
 
