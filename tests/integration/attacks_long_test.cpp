@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 
 #include <random>
+#include <vector>
 
 #include "integration/attacked_run.hpp"
 #include "integration/attacker.hpp"
@@ -134,7 +135,7 @@ TEST_F(HeavyAttacks, FourTickDonesOfTwoHundredMegabytesAreDropped) {
   Attacker attacker(domain_of(launcher));
   ASSERT_TRUE(attacker.ready_to_forge(5)) << launcher.output();
   const long before_kib = memory_kib();
-  std::string block(200'000'000, 'x');
+  std::vector<std::uint8_t> block(200'000'000, 'x');
   long largest_kib = 0;
   for (int i = 0; i < 4; ++i) {
     msg::TickDone message{};
@@ -144,7 +145,7 @@ TEST_F(HeavyAttacks, FourTickDonesOfTwoHundredMegabytesAreDropped) {
     message.incarnation = 1;
     message.index = attacker.state->tick + 1;
     message.checkpoint = {static_cast<std::uint32_t>(block.size()), static_cast<std::uint32_t>(block.size()),
-                          reinterpret_cast<std::uint8_t*>(block.data()), false};
+                          block.data(), false};
     attacker.done.write(message);
     static_cast<void>(eventually(
         [&] {

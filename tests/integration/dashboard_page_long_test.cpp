@@ -72,12 +72,12 @@ TEST_F(DashboardPage, ThePadAndTheKeysDriveWhileTheyAreHeld) {
                     answered("drive: 0.00 m/s, 1.00 rad/s"), "up=ArrowLeft", answered("stands"), "click=#task_start",
                     answered("follow_line was accepted"), "click=#task_cancel", answered("the robot stands"),
                     "click=#parameters summary", "wait=document.querySelectorAll('#parameter_rows tr').length > 50",
-                    "print=(i => { i.value = '9999'; i.dispatchEvent(new Event('change')); })"
-                    "(document.querySelector('#parameter_rows input'))",
+                    ("print=(i => { i.value = '9999'; i.dispatchEvent(new Event('change')); })"
+                     "(document.querySelector('#parameter_rows input'))"),
                     answered("accepted"), "click=#release", answered("released"), "print='handed back'",
                     // Another client changes a parameter, and the page shows it without being asked.
-                    "wait=[...document.querySelectorAll('#parameter_rows tr.changed input')].some("
-                    "i => i.dataset.name === 'navigation.travel.speed_m_s' && i.value === '0.85')"});
+                    ("wait=[...document.querySelectorAll('#parameter_rows tr.changed input')].some("
+                     "i => i.dataset.name === 'navigation.travel.speed_m_s' && i.value === '0.85')")});
   ASSERT_TRUE(page.wait_for("\"handed back\"", 240s)) << page.errors();
   Process changed = command({"param", "set", "navigation.travel.speed_m_s", "0.85"});
   EXPECT_EQ(changed.wait(20s), 0) << changed.errors();

@@ -301,19 +301,15 @@ void add_param(CLI::App& app, Action& action) {
       "A parameter's name is that of its component and the keys in its configuration file:\n"
       "navigation.travel.speed_m_s is `travel: speed_m_s:` in navigation.yaml. Each component announces which of its\n"
       "parameters may change, with unit and bounds.\n\n"
-      "A change takes effect at a tick: the next one, or the one that --at-tick names. The run's report records it. A "
-      "run with the same\n"
-      "changes at the same ticks has the same result, bit for bit (to repeat one: `parameter_changes` in a copy of\n"
-      "components/input/input.yaml, with `constrictor run --config input=FILE`). A reset restores the defaults. "
-      "Setting "
-      "a parameter takes\n"
-      "no authority. While an operator has authority, only operators may set parameters; this command does so as an "
-      "operator.",
+      "A change takes effect at a tick: the next one, or the one that --at-tick names. The run's report records it.\n"
+      "A run with the same changes at the same ticks has the same result, bit for bit (to repeat one:\n"
+      "`parameter_changes` in a copy of components/input/input.yaml, with `constrictor run --config input=FILE`).\n"
+      "A reset restores the defaults. Setting a parameter takes no authority. While an operator has authority, only\n"
+      "operators may set parameters; this command does so as an operator.",
       {"constrictor param list", "constrictor param list navigation.follow_line",
        "constrictor param get navigation.travel.speed_m_s", "constrictor param set navigation.travel.speed_m_s 0.9",
        "constrictor param set control.motion.travel.method sidewinding",
-       "constrictor param set navigation.follow_line.steering.kp 5 navigation.follow_line.steering.ki 0.5 --at-tick "
-       "2000",
+       "constrictor param set navigation.travel.speed_m_s 0.9 navigation.follow_line.steering.kp 5 --at-tick 2000",
        "constrictor param list --changed --json", "constrictor param dump tuned.yaml --changed",
        "constrictor param load tuned.yaml"},
       "0 done; 1 refused, or no such parameter; 64 wrong usage; 70 no run, or several and none chosen; 75 no answer;\n"
