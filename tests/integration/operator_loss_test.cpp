@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "cli/operator.hpp"
+#include "common/operator.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/endpoint.hpp"
 #include "integration/cli_fixture.hpp"
@@ -25,7 +25,7 @@ class OperatorLoss : public CliFixture {
     launcher_.emplace(start(
         {"run", "--manifest", (dir_ / "blind.yaml").string(), "--report", (dir_ / "r").string(), "--pace", "1x"}));
     ASSERT_TRUE(launcher_->wait_for("report in", 30s)) << launcher_->output() << launcher_->errors();
-    hand_.emplace(domain(), cli::operator_options("hand"));
+    hand_.emplace(domain(), operator_options("hand"));
     ASSERT_TRUE(hand_->connect(60s)) << launcher_->output()
                                      << launcher_->errors();  // succeeds when `input` has stepped
     authority_ = dds::Reader<msg::Authority>::member(hand_->participant(), std::string(topics::kAuthority.name));

@@ -16,12 +16,12 @@
 
 #include "cli/launch_plan.hpp"
 #include "cli/program_groups.hpp"
-#include "cli/recording/replay_control.hpp"
 #include "cli/run_difference.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
+#include "common/replay_control.hpp"
 #include "cyclone/domain_claim.hpp"
 #include "runtime/host.hpp"
 

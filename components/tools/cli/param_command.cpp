@@ -13,14 +13,14 @@
 #include <optional>
 #include <set>
 
-#include "cli/interrupt.hpp"
 #include "cli/introspection/domain_view.hpp"
-#include "cli/operator.hpp"
 #include "cli/param_file.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/parameters.hpp"
 #include "client/run_registry.hpp"
+#include "common/interrupt.hpp"
+#include "common/operator.hpp"
 #include "component/parameters.hpp"
 #include "configuration/closest_name.hpp"
 #include "configuration/configuration.hpp"

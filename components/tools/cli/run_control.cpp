@@ -11,13 +11,13 @@
 #include <string>
 #include <utility>
 
-#include "cli/interrupt.hpp"
-#include "cli/operator.hpp"
-#include "cli/recording/replay_control.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_control_client.hpp"
 #include "client/run_registry.hpp"
+#include "common/interrupt.hpp"
+#include "common/operator.hpp"
+#include "common/replay_control.hpp"
 #include "constrictor/text.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/domain.hpp"

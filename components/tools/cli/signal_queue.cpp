@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "cli/interrupt.hpp"
+#include "common/interrupt.hpp"
 
 namespace constrictor::cli {
 

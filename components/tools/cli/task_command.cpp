@@ -14,8 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "cli/interrupt.hpp"
-#include "cli/operator.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/task_request.hpp"
 #include "cli/task_wait.hpp"
@@ -23,6 +21,8 @@
 #include "client/goal_tracker.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "common/interrupt.hpp"
+#include "common/operator.hpp"
 #include "component/task_parameters.hpp"
 #include "configuration/closest_name.hpp"
 #include "constrictor/constants.hpp"

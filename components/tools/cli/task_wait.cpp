@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "cli/interrupt.hpp"
 #include "cli/task_command.hpp"
 #include "cli/task_request.hpp"
 #include "cli/usage.hpp"
@@ -16,6 +15,7 @@
 #include "client/polling.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "common/interrupt.hpp"
 #include "configuration/closest_name.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"

@@ -7,8 +7,6 @@
 #include <memory>
 
 #include "cli/gamepad/gamepad_drive.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/operator.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/teleop_drive.hpp"
 #include "cli/teleop_request.hpp"
@@ -18,6 +16,8 @@
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
 #include "client/task_names.hpp"
+#include "common/interrupt.hpp"
+#include "common/operator.hpp"
 #include "component/task_parameters.hpp"
 #include "robot/drive_motion.hpp"
 #include "runtime/host.hpp"

@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <thread>
 
-#include "cli/interrupt.hpp"
-#include "cli/operator.hpp"
 #include "cli/task_command.hpp"
 #include "cli/usage.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
+#include "common/interrupt.hpp"
+#include "common/operator.hpp"
 #include "robot/drive_motion.hpp"
 #include "runtime/host.hpp"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/screen_size.hpp"
 #include "cli/teleop_keys.hpp"
 #include "cli/teleop_view.hpp"
+#include "common/screen_size.hpp"
 
 namespace constrictor::cli {
 

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "cli/interrupt.hpp"
+#include "common/interrupt.hpp"
 
 namespace constrictor::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/screen_size.hpp"
+#include "common/screen_size.hpp"
 
 namespace constrictor::cli {
 

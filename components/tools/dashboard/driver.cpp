@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "cli/operator.hpp"
 #include "client/task_names.hpp"
+#include "common/operator.hpp"
 #include "component/task_parameters.hpp"
 #include "dashboard/lane.hpp"
 #include "dashboard/protocol.hpp"
@@ -79,8 +79,7 @@ void Driver::check_authority() {
     drive_->held = true;
   } else if (drive_->held) {
     drive_.reset();
-    throw std::runtime_error("drive: authority was lost: " +
-                             cli::no_authority_text(client_.authority(), client_.source()));
+    throw std::runtime_error("drive: authority was lost: " + no_authority_text(client_.authority(), client_.source()));
   }
 }
 

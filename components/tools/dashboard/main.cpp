@@ -10,9 +10,9 @@
 #include <optional>
 #include <string>
 
-#include "cli/recording/replay_control.hpp"
 #include "client/command_error.hpp"
 #include "client/run_registry.hpp"
+#include "common/replay_control.hpp"
 #include "component/data_path.hpp"
 #include "configuration/command_line.hpp"
 #include "dashboard/commands.hpp"
@@ -46,7 +46,7 @@ struct Shown {
 /// The run or the replay in `domain`; without a domain the only run on this host, or else the only replay.
 Shown find(std::optional<std::uint32_t> domain) {
   const Log log("dashboard");
-  const auto replays = cli::live_replays();
+  const auto replays = live_replays();
   const bool wanted = domain && std::find(replays.begin(), replays.end(), *domain) != replays.end();
   if (wanted || (!domain && replays.size() == 1 && live_runs().empty())) {
     auto controls = std::make_unique<dashboard::ReplayControls>(domain.value_or(replays.front()), log);

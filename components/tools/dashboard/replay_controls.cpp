@@ -6,11 +6,11 @@ namespace constrictor::dashboard {
 namespace {
 
 using namespace std::chrono_literals;
-using Kind = cli::ReplayRequest::Kind;
+using Kind = ReplayRequest::Kind;
 
 constexpr auto kLookEvery = 100ms;
 
-std::string describe(const cli::ReplayState& state) {
+std::string describe(const ReplayState& state) {
   return fmt::format("{} at {:.1f} of {:.1f} s",
                      state.ended    ? "at the end"
                      : state.paused ? "paused"
@@ -29,13 +29,13 @@ ReplayControls::ReplayControls(std::uint32_t domain, const Log& log)
 
 std::string ReplayControls::obey(const WebServer::Call& call) {
   const std::string& name = call.service;
-  cli::ReplayRequest request;
+  ReplayRequest request;
   if (name == "pause") request.kind = Kind::kPause;
   else if (name == "resume") request.kind = Kind::kResume;
   else if (name == "step") request = {Kind::kStep, request_number(call, "ticks", 1, 1e6)};
   else if (name == "pace") request = {Kind::kSpeed, request_number(call, "pace", 0, 1000)};
   else request = {Kind::kSeek, request_number(call, "time_s", 0, 1e9)};
-  const cli::ReplayState state = client_.ask(request);
+  const ReplayState state = client_.ask(request);
   keep(state);
   return describe(state);
 }
@@ -52,7 +52,7 @@ void ReplayControls::look() {
   over_ = true;
 }
 
-void ReplayControls::keep(const cli::ReplayState& state) {
+void ReplayControls::keep(const ReplayState& state) {
   const std::lock_guard lock(mutex_);
   state_ = state;
 }
@@ -64,7 +64,7 @@ std::string ReplayControls::over() const {
 
 std::optional<nlohmann::json> ReplayControls::replay() const {
   const std::lock_guard lock(mutex_);
-  return cli::to_json(state_);
+  return to_json(state_);
 }
 
 std::string ReplayControls::file() const {

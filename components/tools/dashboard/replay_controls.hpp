@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/recording/replay_control.hpp"
+#include "common/replay_control.hpp"
 #include "cyclone/domain.hpp"
 #include "dashboard/controls.hpp"
 #include "dashboard/lane.hpp"
@@ -38,13 +38,13 @@ class ReplayControls : public Controls {
  private:
   std::string obey(const WebServer::Call& call);
   void look();
-  void keep(const cli::ReplayState& state);
+  void keep(const ReplayState& state);
 
   dds::Domain domain_;
-  cli::ReplayClient client_;  ///< used by the constructor and then by the lane's thread
+  ReplayClient client_;  ///< used by the constructor and then by the lane's thread
   std::chrono::steady_clock::time_point looked_{};
   mutable std::mutex mutex_;
-  cli::ReplayState state_;
+  ReplayState state_;
   bool over_ = false;
   Answers answers_;
   Lane lane_;  ///< last: its thread uses the others

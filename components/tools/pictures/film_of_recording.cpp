@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "cli/interrupt.hpp"
-#include "cli/progress_display.hpp"
+#include "common/interrupt.hpp"
+#include "common/progress_display.hpp"
 #include "configuration/counted.hpp"
 #include "pictures/film_drawer.hpp"
 #include "pictures/film_file.hpp"
@@ -57,7 +57,7 @@ class Progress {
 
  private:
   std::size_t frames_;
-  cli::ProgressDisplay display_;
+  ProgressDisplay display_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   double shown_s_ = -1.0;
 };
@@ -110,7 +110,7 @@ int make_film(const FilmOptions& options) {
     while (!drawer.empty()) write_oldest();
   } catch (const Interrupted&) {
     ended = "interrupted";
-    status = cli::interrupt_status();
+    status = interrupt_status();
   } catch (const Full&) {
     ended = "the disk is full";
     status = exit_status::kSoftware;

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "cli/interrupt.hpp"
+#include "common/interrupt.hpp"
 #include "configuration/configuration.hpp"
 #include "pictures/pictures.hpp"
 #include "pictures/recorded_story.hpp"
@@ -21,7 +21,7 @@
 namespace constrictor::pictures {
 
 void check_interrupt() {
-  if (cli::interrupt_signal() != 0) throw Interrupted();
+  if (interrupt_signal() != 0) throw Interrupted();
 }
 
 void require_writable(const std::filesystem::path& file) {
@@ -80,13 +80,13 @@ int main(int argc, char** argv) {
     return argument == "--help" ? exit_status::kOk : exit_status::kUsage;
   }
   ensure_numeric_environment(argv);  // images that are computed again must be those of the run
-  cli::catch_interrupts();
+  catch_interrupts();
   const std::string name = wish.value("picture", "");
   try {
     return pictures::draw(wish);
   } catch (const pictures::Interrupted&) {
     fmt::print(stderr, "{}: interrupted; nothing was written\n", name);
-    return cli::interrupt_status();
+    return interrupt_status();
   } catch (const pictures::NoPicture& error) {
     fmt::print(stderr, "{}: {}\n", name, error.what());
     return exit_status::kConfiguration;

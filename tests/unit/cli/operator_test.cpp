@@ -1,5 +1,5 @@
 // The texts about authority that the commands of an operator print.
-#include "cli/operator.hpp"
+#include "common/operator.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/progress_display.hpp"
+#include "common/progress_display.hpp"
 
 namespace constrictor::cli {
 namespace {

@@ -177,7 +177,8 @@ std::vector<std::string> symbol_violations(const Library& library) {
   const std::string& name = library.name;
   // The runtime and the programs on top of it are there to talk DDS and to look at the clock.
   const bool talks_dds = library.folder == "components/lib/cyclone" || library.folder == "components/lib/runtime" ||
-                         library.folder == "components/lib/client" || library.folder == "components/tools/cli";
+                         library.folder == "components/lib/client" || library.folder == "components/tools/cli" ||
+                         library.folder == "components/tools/common";
   // A serial port has answers to wait for, and a frame has an age; they give the time to the driver as an argument.
   const bool waits_for_devices = library.folder == "components/lib/serial" || library.folder == "components/lib/video";
   if (talks_dds || waits_for_devices || library.folder == "idl") return {};

@@ -61,6 +61,7 @@ TEST(Layout, TheLibrariesOfAllFoldersAreChecked) {
                              "components/lib/recording",
                              "components/lib/runtime",
                              "components/tools/cli",
+                             "components/tools/common",
                              "components/tools/conform",
                              "components/tools/dashboard",
                              "components/tools/ros_bridge",

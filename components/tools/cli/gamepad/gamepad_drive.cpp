@@ -13,12 +13,12 @@
 
 #include "cli/gamepad/device.hpp"
 #include "cli/gamepad/gamepad.hpp"
-#include "cli/interrupt.hpp"
-#include "cli/operator.hpp"
 #include "cli/teleop_drive.hpp"
 #include "cli/teleop_request.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
+#include "common/interrupt.hpp"
+#include "common/operator.hpp"
 #include "robot/drive_motion.hpp"
 #include "runtime/host.hpp"
 

@@ -5,9 +5,9 @@
 #include <set>
 #include <thread>
 
-#include "cli/interrupt.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
+#include "common/interrupt.hpp"
 #include "configuration/closest_name.hpp"
 #include "constrictor/topics.hpp"
 

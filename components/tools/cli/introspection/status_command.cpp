@@ -11,12 +11,12 @@
 #include <thread>
 
 #include "cli/introspection/domain_view.hpp"
-#include "cli/operator.hpp"
-#include "cli/recording/replay_control.hpp"
 #include "cli/run_observer.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
 #include "client/run_registry.hpp"
+#include "common/operator.hpp"
+#include "common/replay_control.hpp"
 #include "configuration/counted.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"

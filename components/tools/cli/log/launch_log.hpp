@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "cli/progress_display.hpp"
 #include "cli/run_observer.hpp"
+#include "common/progress_display.hpp"
 #include "log/log.hpp"
 #include "runtime/log_publisher.hpp"
 

@@ -10,7 +10,6 @@
 #include <set>
 #include <thread>
 
-#include "cli/interrupt.hpp"
 #include "cli/introspection/domain_view.hpp"
 #include "cli/log/log_files.hpp"
 #include "cli/log/log_lines.hpp"
@@ -19,6 +18,7 @@
 #include "client/log_reader.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
+#include "common/interrupt.hpp"
 #include "configuration/closest_name.hpp"
 #include "constrictor/constants.hpp"
 #include "constrictor/json.hpp"

@@ -6,11 +6,11 @@
 #include <system_error>
 #include <vector>
 
-#include "cli/interrupt.hpp"
-#include "cli/progress_display.hpp"
 #include "cli/recording/recorded_messages.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "common/interrupt.hpp"
+#include "common/progress_display.hpp"
 #include "configuration/counted.hpp"
 #include "configuration/whole_file.hpp"
 #include "recording/mcap_copy.hpp"

@@ -8,14 +8,14 @@
 #include <thread>
 #include <utility>
 
-#include "cli/interrupt.hpp"
 #include "cli/recording/key_input.hpp"
 #include "cli/recording/recording_text.hpp"
-#include "cli/recording/replay_control.hpp"
 #include "cli/recording/replayed_topics.hpp"
 #include "cli/recording/topic_pattern.hpp"
 #include "cli/usage.hpp"
 #include "client/command_error.hpp"
+#include "common/interrupt.hpp"
+#include "common/replay_control.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/discovery.hpp"
 #include "cyclone/domain.hpp"

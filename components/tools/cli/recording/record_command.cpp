@@ -7,7 +7,6 @@
 #include <deque>
 #include <optional>
 
-#include "cli/interrupt.hpp"
 #include "cli/introspection/domain_view.hpp"
 #include "cli/recording/recording_text.hpp"
 #include "cli/recording/run_files.hpp"
@@ -17,6 +16,7 @@
 #include "client/command_error.hpp"
 #include "client/run_monitor.hpp"
 #include "client/run_registry.hpp"
+#include "common/interrupt.hpp"
 #include "constrictor/topics.hpp"
 #include "cyclone/topic_tap.hpp"
 #include "recording/message_cdr.hpp"

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "cli/commands.hpp"
-#include "cli/interrupt.hpp"
 #include "cli/recording/player.hpp"
 #include "cli/recording/recorded_messages.hpp"
 #include "cli/subcommands.hpp"
 #include "cli/usage.hpp"
+#include "common/interrupt.hpp"
 #include "recording/mcap_reader.hpp"
 #include "runtime/host.hpp"
 

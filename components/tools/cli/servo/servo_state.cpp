@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <thread>
 
-#include "cli/interrupt.hpp"
 #include "cli/servo/servo_options.hpp"
 #include "cli/usage.hpp"
+#include "common/interrupt.hpp"
 #include "configuration/counted.hpp"
 #include "runtime/host.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace constrictor::cli {
+namespace constrictor {
 
 /// Size of a terminal in characters.
 struct ScreenSize {
@@ -20,4 +20,4 @@ struct ScreenSize {
 /// printable ASCII. A line that was cut ends with ">".
 [[nodiscard]] std::string screen_line(std::string text, std::size_t columns);
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

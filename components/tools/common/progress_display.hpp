@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <string>
 
-#include "cli/screen_size.hpp"
+#include "common/screen_size.hpp"
 
-namespace constrictor::cli {
+namespace constrictor {
 
 /// A status line that is rewritten on a terminal; elsewhere it is printed every few seconds if it has changed. On a
 /// terminal it is cut to the width, because a terminal does not rewrite a line that it has wrapped.
@@ -58,4 +58,4 @@ class SpeedMeter {
   double factor_ = 0;
 };
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

@@ -1,4 +1,4 @@
-#include "cli/recording/replay_control.hpp"
+#include "common/replay_control.hpp"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -17,7 +17,7 @@
 #include "client/command_error.hpp"
 #include "cyclone/domain_claim.hpp"
 
-namespace constrictor::cli {
+namespace constrictor {
 namespace {
 
 namespace fs = std::filesystem;
@@ -206,4 +206,4 @@ void refuse_replay(std::optional<std::uint32_t> domain) {
                      CommandError::Cause::kNoRun);
 }
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

@@ -7,7 +7,7 @@
 
 #include "client/request_client.hpp"
 
-namespace constrictor::cli {
+namespace constrictor {
 
 /// Options of a client with the level of an operator, whose waits end at Ctrl-C (it calls catch_interrupts()).
 /// If `lease` is 0, authority ends with the process; otherwise it also ends when the process hangs for this time. If
@@ -27,4 +27,4 @@ std::string authority_text(const std::optional<msg::Authority>& authority);
 /// Why the source `own` has no authority (any more), and what to do about an emergency stop.
 std::string no_authority_text(const std::optional<msg::Authority>& authority, const std::string& own);
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

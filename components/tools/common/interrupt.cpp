@@ -1,6 +1,6 @@
-#include "cli/interrupt.hpp"
+#include "common/interrupt.hpp"
 
-namespace constrictor::cli {
+namespace constrictor {
 namespace {
 
 volatile std::sig_atomic_t g_signal = 0;
@@ -17,4 +17,4 @@ void survive_closed_pipes() { ::signal(SIGPIPE, SIG_IGN); }
 
 int interrupt_signal() { return static_cast<int>(g_signal); }
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace constrictor::cli {
+namespace constrictor {
 
 /// A request to a replay.
 struct ReplayRequest {
@@ -81,4 +81,4 @@ void refuse_replay(std::optional<std::uint32_t> domain);
 [[nodiscard]] ReplayRequest replay_request_of(const nlohmann::json& packet);
 [[nodiscard]] ReplayState replay_state_of(const nlohmann::json& packet);
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

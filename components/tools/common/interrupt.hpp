@@ -4,7 +4,7 @@
 #include <csignal>
 #include <initializer_list>
 
-namespace constrictor::cli {
+namespace constrictor {
 
 /// From now on these signals only set a flag.
 void catch_interrupts(std::initializer_list<int> signals = {SIGINT, SIGTERM, SIGHUP, SIGQUIT});
@@ -17,4 +17,4 @@ void catch_interrupts(std::initializer_list<int> signals = {SIGINT, SIGTERM, SIG
 /// log` must end in order also if Ctrl-C has ended `tee`. Processes that it starts have the default action.
 void survive_closed_pipes();
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

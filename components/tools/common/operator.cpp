@@ -1,15 +1,15 @@
-#include "cli/operator.hpp"
+#include "common/operator.hpp"
 
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <utility>
 
-#include "cli/interrupt.hpp"
 #include "client/task_names.hpp"
+#include "common/interrupt.hpp"
 #include "runtime/host.hpp"
 
-namespace constrictor::cli {
+namespace constrictor {
 
 RequestClientOptions operator_options(std::string source, std::chrono::milliseconds lease, bool detached) {
   catch_interrupts();
@@ -77,4 +77,4 @@ std::string no_authority_text(const std::optional<msg::Authority>& authority, co
                      own == authority->source ? "this program" : authority->source);
 }
 
-}  // namespace constrictor::cli
+}  // namespace constrictor

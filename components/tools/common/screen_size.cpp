@@ -1,11 +1,11 @@
-#include "cli/screen_size.hpp"
+#include "common/screen_size.hpp"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 
-namespace constrictor::cli {
+namespace constrictor {
 
 ScreenSize screen_size() {
   winsize window{};
@@ -23,4 +23,4 @@ std::string screen_line(std::string text, std::size_t columns) {
   return text;
 }
 
-}  // namespace constrictor::cli
+}  // namespace constrictor
