@@ -25,10 +25,13 @@ const std::map<std::string, Budget> kBudgets = {
 /// Of all processes together: 1.15 times the measured values, because the deviations of the processes partly cancel
 /// each other.
 constexpr Budget kSumBudget = {18.3, 261};
+/// [MiB] the goal for the greatest memory (PSS) of all processes together. It is shown, and it is no limit.
+constexpr double kGoal_mib = 150;
 /// [s] wall time from the start of the launcher to the first motion.
 constexpr double kLaunchLimit_s = 1.0;
-/// The benchmark of bench_world with which the budgets were measured: one period of control, 20 ms, in steps of 4 ms.
-const std::string kReference = "undulate/engine:1/step_us:4000/iterations:50/contacts:2/iterations:430";
+/// The benchmark of bench_world with which the budgets were measured: one period of control, 20 ms, in the steps of
+/// physics.yaml.
+const std::string kReference = "undulate/engine:1/step_us:5000/iterations:50/contacts:2/iterations:430";
 
 /// The column of a process in the table of groups: those of the roster, and the launcher with what it starts.
 std::string column_of(const std::string& process) { return kBudgets.contains(process) ? process : "launcher"; }
@@ -37,8 +40,12 @@ std::string column_of(const std::string& process) { return kBudgets.contains(pro
 
 void add_case_study(const Results& results, Table& table) {
   const json report = results.file("case_study/report.json");
+  if (!report.is_object()) return;
   const auto reference = results.times_ms().find(kReference);
-  if (!report.is_object() || reference == results.times_ms().end()) return;
+  if (reference == results.times_ms().end()) {
+    table.fail("case_study", fmt::format("there are no budgets without the benchmark {}", kReference));
+    return;
+  }
   const double physics_ms = 50.0 * reference->second;  // for one second of simulated time
   const double simulated_s = report.value("sim_time_s", 1.0);
   table.text += fmt::format(
@@ -66,6 +73,7 @@ void add_case_study(const Results& results, Table& table) {
     table.all["processes"][name] = add_row(name, ms, mib, budget == kBudgets.end() ? nullptr : &budget->second);
   }
   table.all["case_study"] = add_row("all", sum_ms, sum_mib, &kSumBudget);
+  table.text += fmt::format("\nThe goal for the memory of all processes together is {} MiB.\n", kGoal_mib);
   table.all["case_study"]["real_time_factor"] = report.value("real_time_factor", 0.0);
   table.all["case_study"]["cpu_ms_per_tick"] = sum_ms * simulated_s / report.value("ticks", 1.0);
 }

@@ -31,11 +31,7 @@ int main(int argc, char** argv) {
   add_ddsperf(results, table);
   add_engines(results, table);
   add_renderers(results, table);
-  for (const auto& [name, message] : results.errors()) {
-    table.within = false;
-    table.all["errors"][name] = message;
-    table.text += fmt::format("\nEXCEEDED: {} could not measure: {}\n", name, message);
-  }
+  for (const auto& [name, message] : results.errors()) table.fail(name, message);
   table.all["within_budgets"] = table.within;
   std::ofstream(folder / "bench.json") << table.all.dump(2) << "\n";
   std::ofstream(folder / "bench.md") << table.text;

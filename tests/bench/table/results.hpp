@@ -1,6 +1,8 @@
 // What the benchmarks wrote into a folder, and the table and the JSON that are made of it.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -40,6 +42,12 @@ struct Table {
   [[nodiscard]] const char* verdict(bool excess) {
     within = within && !excess;
     return excess ? "EXCEEDED" : "";
+  }
+  /// What could not be measured or compared counts as exceeded.
+  void fail(const std::string& name, const std::string& message) {
+    within = false;
+    all["errors"][name] = message;
+    text += fmt::format("\nEXCEEDED: {} could not be measured: {}\n", name, message);
   }
 };
 

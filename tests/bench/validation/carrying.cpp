@@ -118,12 +118,14 @@ CarryingMeasurement measure_carrying(const RobotModel& robot, const SolverSettin
   const Eigen::Vector2d held_m = object_in_bend();
   Vector3d last_m = centre_of(world);
   double torque_squares = 0.0;
+  double force_squares = 0.0;
   for (int i = 1; i <= ticks; ++i, ++tick) {
     motion.drive(world, (tick + 1) * kPeriod_s);
     for (const std::size_t joint : yaw) torque_squares += std::pow(world.joint_torque_nm(joint), 2);
     for (std::size_t k = 0; k < kBase.size(); ++k)
       found.base_torque_nm +=
           std::abs(world.joint_torque_nm(motion.base_joint(k))) / static_cast<double>(kBase.size() * ticks);
+    force_squares += ground_force_square_n2(world);
     found.object_force_n += object_force_n(world) / ticks;
     found.joint_gap_m = std::max(found.joint_gap_m, largest_joint_gap_m(world));
     if (i % 50 != 0) continue;
@@ -131,6 +133,7 @@ CarryingMeasurement measure_carrying(const RobotModel& robot, const SolverSettin
     last_m = centre_of(world);
   }
   found.torque_rms_nm = std::sqrt(torque_squares / static_cast<double>(yaw.size() * ticks));
+  found.ground_force_n = std::sqrt(force_squares / ticks);
   found.slip_m = (object_in_bend() - held_m).norm();
   found.unsolved = world.dynamics().unsolved();
   return found;

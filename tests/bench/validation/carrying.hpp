@@ -14,6 +14,7 @@ struct CarryingMeasurement {
   double torque_rms_nm = 0.0;   ///< filtered torques of the yaw joints
   double base_torque_nm = 0.0;  ///< mean of the joints that press on the object
   double object_force_n = 0.0;  ///< mean sum of the forces on the object
+  double ground_force_n = 0.0;  ///< rms of the ground's force on a module
   double joint_gap_m = 0.0;     ///< largest
   std::int64_t unsolved = 0;    ///< steps whose equations were not solved to the engine's tolerance
   double slip_m = 0.0;          ///< how far the object has moved in the frame of the middle of the bend

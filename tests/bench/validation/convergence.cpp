@@ -94,6 +94,9 @@ void check_carrying(Section& section, const std::string& name, const RobotModel&
   };
   compare("speed", "m/s", &CarryingMeasurement::speed_m_s, 0.03, true);
   compare("rms torque of the yaw joints", "Nm", &CarryingMeasurement::torque_rms_nm, 0.05, true);
+  compare("mean torque of the joints that press on the object", "Nm", &CarryingMeasurement::base_torque_nm, 0.05,
+          force_required);
+  compare("rms force of the ground on a module", "N", &CarryingMeasurement::ground_force_n, 0.05, true);
   compare("force on the object", "N", &CarryingMeasurement::object_force_n, 0.05, force_required);
   section.cases.push_back({name + ": way of the object in the bend in 10 s", "m", 0.0, usual.slip_m, 0.02, false});
   section.cases.push_back({name + ": largest gap at a joint", "mm", 0.0, 1e3 * usual.joint_gap_m, 0.2, false});
@@ -126,10 +129,14 @@ Section check_convergence() {
   section.cases.push_back({"empty: speed", "m/s", reference.speed_m_s, usual.speed_m_s, 0.03});
   section.cases.push_back(
       {"empty: rms torque of the yaw joints", "Nm", reference.torque_rms_nm, usual.torque_rms_nm, 0.05});
+  section.cases.push_back(
+      {"empty: rms force of the ground on a module", "N", reference.ground_force_n, usual.ground_force_n, 0.05});
   section.cases.push_back({"empty: largest gap at a joint", "mm", 0.0, 1e3 * usual.joint_gap_m, 0.2, false});
   section.cases.push_back({"empty, 0.25 ms: speed", "m/s", reference.speed_m_s, doubled.speed_m_s, kConverged});
   section.cases.push_back(
       {"empty, 0.25 ms: rms torque", "Nm", reference.torque_rms_nm, doubled.torque_rms_nm, kConverged});
+  section.cases.push_back({"empty, 0.25 ms: rms force of the ground on a module", "N", reference.ground_force_n,
+                           doubled.ground_force_n, kConverged});
   section.cases.push_back({"empty, 0.5 ms: speed, ode", "m/s", fine.speed_m_s, other.speed_m_s, 0.02});
   section.cases.push_back(
       {"empty, 0.5 ms: rms torque, ode", "Nm", fine.torque_rms_nm, other.torque_rms_nm, 0.05, true, false});

@@ -64,6 +64,15 @@ double largest_joint_gap_m(const World& world) {
   return largest;
 }
 
+double ground_force_square_n2(const World& world) {
+  std::vector<Vector3d> forces_n(world.module_count(), Vector3d::Zero());  // each in its module's frame
+  for (const ModuleContact& contact : world.contacts())
+    if (contact.touched == Touched::kGround) forces_n[contact.module_index] += contact.force_n;
+  double sum = 0.0;
+  for (const Vector3d& force_n : forces_n) sum += force_n.squaredNorm();
+  return sum / static_cast<double>(forces_n.size());
+}
+
 namespace {
 
 /// Mean direction of the modules' axes: a unit vector.
@@ -100,6 +109,7 @@ GaitMeasurement measure_gait(const RobotModel& robot, const Gait& gait, const So
   double tick_squares = 0.0;
   std::vector<double> tick_torque_nm(yaw.size());  // sum over the steps of a tick
   double error_squares = 0.0;
+  double force_squares = 0.0;
   int steps = 0;
   std::vector<double> rates(world.joint_count());
   for (std::size_t i = 0; i < rates.size(); ++i) rates[i] = world.joint_rate_rad_s(i);
@@ -130,6 +140,7 @@ GaitMeasurement measure_gait(const RobotModel& robot, const Gait& gait, const So
       for (const std::size_t joint : yaw)
         error_squares += std::pow(now.angle_rad[static_cast<Eigen::Index>(joint)] - world.joint_angle_rad(joint), 2);
       found.joint_gap_m = std::max(found.joint_gap_m, largest_joint_gap_m(world));
+      force_squares += ground_force_square_n2(world);
       for (const ModuleContact& contact : world.contacts()) {
         const Vector3d force_W = world.module_pose(contact.module_index).linear() * contact.force_n;
         found.vertical_force_n += force_W.z() / (cycles * ticks);
@@ -141,6 +152,7 @@ GaitMeasurement measure_gait(const RobotModel& robot, const Gait& gait, const So
   found.torque_rms_nm = std::sqrt(tick_squares / (joints * steps));
   found.ripple_nm = std::sqrt(std::max(0.0, step_squares - tick_squares) / (joints * steps));
   found.tracking_rad = std::sqrt(error_squares / (joints * cycles * ticks));
+  found.ground_force_n = std::sqrt(force_squares / (cycles * ticks));
   found.kinetic_change_j = kinetic_energy_j(world) - kinetic_j;
   return found;
 }

@@ -26,6 +26,8 @@ void drive(World& world, const Gait& gait, double time_s, const std::function<vo
 [[nodiscard]] Eigen::Vector3d centre_of(const World& world);
 /// [m] largest distance between the two ends that meet at a joint; 0 if the solver were exact.
 [[nodiscard]] double largest_joint_gap_m(const World& world);
+/// [N^2] mean over the modules of the squared force of the ground on a module.
+[[nodiscard]] double ground_force_square_n2(const World& world);
 
 struct GaitMeasurement {
   double speed_m_s = 0.0;      ///< of the centre along the mean direction of the body, mean over whole cycles
@@ -37,6 +39,7 @@ struct GaitMeasurement {
   double friction_j = 0.0;     ///< taken by all contacts
   double kinetic_change_j = 0.0;
   double vertical_force_n = 0.0;  ///< mean sum of the contact forces
+  double ground_force_n = 0.0;    ///< rms of the ground's force on a module
   double duration_s = 0.0;
 };
 
