@@ -11,7 +11,7 @@ double seconds(std::int64_t nanoseconds) { return 1e-9 * static_cast<double>(nan
 
 }  // namespace
 
-FaultDirector::FaultDirector(FaultPlan plan) {
+FaultDirector::FaultDirector(const FaultPlan& plan) {
   for (const auto& fault : plan.topics) {
     if (fault.kind != TopicFault::Kind::kLinkDown)  // the link's fault announces all of its topics
       announced_.push_back({describe(fault), seconds(fault.from_ns), seconds(fault.until_ns)});

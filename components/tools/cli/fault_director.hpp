@@ -23,7 +23,7 @@ class FaultDirector {
     std::string line;
   };
 
-  explicit FaultDirector(FaultPlan plan);
+  explicit FaultDirector(const FaultPlan& plan);
 
   /// For a run that is continued at this simulated time: what has happened before it is not repeated. A fault of a
   /// device that lasts begins again, because the device was started anew.

@@ -129,8 +129,8 @@ TEST(RosTypes, AgreeWithDebiansDefinitionsExceptWhereRos2Changed) {
       if (one.type == "time") one.type = "builtin_interfaces/Time";
       if (one.type == "duration") one.type = "builtin_interfaces/Duration";
     }
-    const auto change =
-        std::find_if(changes.begin(), changes.end(), [&](const auto& each) { return each.message == message; });
+    const auto change = std::find_if(changes.begin(), changes.end(),
+                                     [&name = message](const auto& each) { return each.message == name; });
     if (change != changes.end()) {
       const auto at = std::search(expected.begin(), expected.end(), change->ros1.begin(), change->ros1.end());
       ASSERT_TRUE(at != expected.end() || expected.empty()) << message << " of ROS 1 is not as expected";
