@@ -96,7 +96,8 @@ TEST_F(FoxgloveViewer, DrawsARecordingThatIsReplayedOrOpenedAsAFile) {
   Process run = start({"run", "line", "--in-process", "--record", "--report", (dir_ / "r").string()});
   ASSERT_EQ(run.wait(120s), 0) << run.output() << run.errors();
 
-  Process replay = start({"replay", (dir_ / "r" / "run.mcap").string(), "--speed", "0.2"});
+  // The line is in sight for some seconds, and a busy machine needs a minute to load the viewer.
+  Process replay = start({"replay", (dir_ / "r" / "run.mcap").string(), "--speed", "0.05"});
   ASSERT_TRUE(replay.wait_for("replay", 20s)) << replay.errors();
   watch();
   Steps steps = drawn();

@@ -81,7 +81,7 @@ class ConformControl final : public Component {
 
 }  // namespace
 
-std::optional<PlantCommand> TickExchange::step(Observed observed) {
+std::optional<PlantCommand> TickExchange::step(const Observed& observed) {
   const std::lock_guard lock(mutex_);
   if (observed.epoch != observed_.epoch) observed_ = {};
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };

@@ -26,7 +26,7 @@ class TickExchange {
     std::int64_t tick = -1;
   };
   /// Called by the component at each tick: adds its inputs. Returns the command of this tick; empty: none.
-  std::optional<PlantCommand> step(Observed observed);
+  std::optional<PlantCommand> step(const Observed& observed);
   /// The checks: gives the command of the next tick and waits until the component has taken it. Returns what the
   /// component has seen since the last call. Throws PlantGone if the run has ended, or makes no ticks.
   Observed advance(std::optional<PlantCommand> command);
