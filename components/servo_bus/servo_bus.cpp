@@ -36,7 +36,7 @@ OpenPort serial_ports(const std::filesystem::path& folder) {
 
 }  // namespace
 
-ServoBus::ServoBus(Wiring& wiring, const Setup& setup, OpenPort open)
+ServoBus::ServoBus(Wiring& wiring, const Setup& setup, const OpenPort& open)
     : wiring_(wiring),
       log_(setup.log),
       config_(load_parameters<ServoBusConfig>(setup.config_file)),
@@ -175,7 +175,7 @@ void ServoBus::load(const std::string& bytes) {
   continued_ = true;
 }
 
-ComponentFactory make_servo_bus_factory(OpenPort open) {
+ComponentFactory make_servo_bus_factory(const OpenPort& open) {
   return {"servo_bus",
           [open](Wiring& wiring, const Setup& setup) { return std::make_unique<ServoBus>(wiring, setup, open); },
           "components/servo_bus/servo_bus.yaml", describe_parameters<ServoBusConfig>};

@@ -18,7 +18,7 @@ class ServoBus final : public Plant, public DeviceOwner {
  public:
   /// Reads the robot, the configuration and the bus file; opens no port. Throws ConfigurationError. `open`: replaces
   /// the serial ports in tests.
-  ServoBus(Wiring& wiring, const Setup& setup, OpenPort open = nullptr);
+  ServoBus(Wiring& wiring, const Setup& setup, const OpenPort& open = nullptr);
   /// As release_device().
   ~ServoBus() override;
 
@@ -75,6 +75,6 @@ class ServoBus final : public Plant, public DeviceOwner {
   Output<msg::ImuState> imu_state_ = wiring_.output(topics::kImuState);
 };
 
-ComponentFactory make_servo_bus_factory(OpenPort open = nullptr);
+ComponentFactory make_servo_bus_factory(const OpenPort& open = nullptr);
 
 }  // namespace constrictor

@@ -110,9 +110,9 @@ constexpr std::uint32_t kFirst = 1, kLast = 100;  // domains among which a free 
 
 std::filesystem::path run_directory() {
   const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-  const std::filesystem::path directory = runtime && *runtime
-                                              ? std::filesystem::path(runtime) / "constrictor"
-                                              : std::filesystem::path("/tmp/constrictor-" + std::to_string(::getuid()));
+  std::filesystem::path directory = runtime && *runtime
+                                        ? std::filesystem::path(runtime) / "constrictor"
+                                        : std::filesystem::path("/tmp/constrictor-" + std::to_string(::getuid()));
   if (std::filesystem::create_directories(directory))
     std::filesystem::permissions(directory, std::filesystem::perms::owner_all);  // the notes contain tokens
   return directory;

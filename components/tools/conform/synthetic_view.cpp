@@ -144,7 +144,8 @@ std::vector<std::uint8_t> SyntheticCamera::draw(const SyntheticScene& scene) con
     for (int u = 0; u < model_.width; ++u) {
       Vector3d sum = Vector3d::Zero();
       for (int i = 0; i < kSub * kSub; ++i) {
-        const double at_u = u + (i % kSub + 0.5) / kSub, at_v = v + (i / kSub + 0.5) / kSub;
+        const int column = i % kSub, row = i / kSub;
+        const double at_u = u + (column + 0.5) / kSub, at_v = v + (row + 0.5) / kSub;
         const Vector3d ray((at_u - 0.5 * model_.width) / focal_pixels_, (at_v - 0.5 * model_.height) / focal_pixels_,
                            1.0);
         sum += colour_of(scene, eye, R_GC * ray) / (kSub * kSub);

@@ -46,7 +46,7 @@ class ParameterTable : public ::testing::TestWithParam<std::string> {
     std::string indent;
     for (std::string part; std::getline(keys, part, '.'); indent += "  ")
       text += (text.empty() ? "" : "\n") + indent + part + ":";
-    const fs::path file = folder_.path() / "changed.yaml";
+    fs::path file = folder_.path() / "changed.yaml";
     std::ofstream(file) << text << " " << value << "\n";
     return file;
   }
