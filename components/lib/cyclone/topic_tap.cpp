@@ -72,7 +72,8 @@ void TopicTap::wait(std::chrono::milliseconds bound) const { wait_set_.wait(boun
 
 void TopicTap::take(const std::function<void(const Topic&, const RawSample&)>& use) const {
   for (const auto& [key, reading] : readings_) {
-    if (reading.reader) reading.reader->take([&](const RawSample& sample) { use(reading.topic, sample); });
+    if (reading.reader)
+      reading.reader->take([&, &topic = reading.topic](const RawSample& sample) { use(topic, sample); });
   }
 }
 

@@ -34,7 +34,7 @@ struct Mapping {
     b.width_m = 2.0 * radius;
     return b;
   }
-  void see(std::initializer_list<msg::Blob> blobs, int times = 1, PlanarPose exposure = {}) {
+  void see(std::initializer_list<msg::Blob> blobs, int times = 1, const PlanarPose& exposure = {}) {
     msg::ObjectPercepts percepts{};
     for (const msg::Blob& b : blobs) percepts.blobs[percepts.blob_count++] = b;
     for (int i = 0; i < times; ++i) mapper.objects(percepts, exposure, tick += 5);
