@@ -10,14 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Sum in W of the forces on each module.
-std::vector<Vector3d> forces_n(const World& world) {
-  std::vector<Vector3d> sums(world.module_count(), Vector3d::Zero());
-  for (const ModuleContact& contact : world.contacts())
-    sums[contact.module_index] += world.module_pose(contact.module_index).linear() * contact.force_n;
-  return sums;
-}
-
 Vector3d sum_of(const std::vector<Vector3d>& forces) {
   Vector3d sum = Vector3d::Zero();
   for (const Vector3d& force : forces) sum += force;
@@ -40,7 +32,7 @@ Section check_contact_forces() {
 
   World resting(robot, Scenario{});
   hold(resting, 0.0, 6.0, 2.0);
-  const std::vector<Vector3d> resting_n = forces_n(resting);
+  const std::vector<Vector3d> resting_n = module_forces_n(resting);
   section.cases.push_back({"at rest: sum of the vertical forces", "N", weight_n, sum_of(resting_n).z(), 0.001});
   section.cases.push_back(
       {"at rest: sum of the horizontal forces", "N", 0.0, sum_of(resting_n).head<2>().norm(), 0.01 * weight_n, false});
@@ -70,7 +62,7 @@ Section check_contact_forces() {
   scenario.gravity_m_s2 = kG * Vector3d(0.0, std::sin(kSlope_rad), -std::cos(kSlope_rad));
   World sloping(robot, scenario);
   hold(sloping, 0.0, 6.0, 2.0);
-  const Vector3d sloping_n = sum_of(forces_n(sloping));
+  const Vector3d sloping_n = sum_of(module_forces_n(sloping));
   section.cases.push_back({"across a slope of 15°: sum of the forces that press, m g cos a", "N",
                            weight_n * std::cos(kSlope_rad), sloping_n.z(), 0.001});
   section.cases.push_back({"across a slope of 15°: sum of the friction forces, m g sin a", "N",

@@ -64,10 +64,16 @@ double largest_joint_gap_m(const World& world) {
   return largest;
 }
 
-double ground_force_square_n2(const World& world) {
-  std::vector<Vector3d> forces_n(world.module_count(), Vector3d::Zero());  // each in its module's frame
+std::vector<Vector3d> module_forces_n(const World& world, std::optional<Touched> touched) {
+  std::vector<Vector3d> sums(world.module_count(), Vector3d::Zero());
   for (const ModuleContact& contact : world.contacts())
-    if (contact.touched == Touched::kGround) forces_n[contact.module_index] += contact.force_n;
+    if (!touched || contact.touched == *touched)
+      sums[contact.module_index] += world.module_pose(contact.module_index).linear() * contact.force_n;
+  return sums;
+}
+
+double ground_force_square_n2(const World& world) {
+  const std::vector<Vector3d> forces_n = module_forces_n(world, Touched::kGround);
   double sum = 0.0;
   for (const Vector3d& force_n : forces_n) sum += force_n.squaredNorm();
   return sum / static_cast<double>(forces_n.size());

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "bench/validation/lateral_undulation.hpp"
 #include "bench/validation/rigs.hpp"
@@ -26,6 +28,8 @@ void drive(World& world, const Gait& gait, double time_s, const std::function<vo
 [[nodiscard]] Eigen::Vector3d centre_of(const World& world);
 /// [m] largest distance between the two ends that meet at a joint; 0 if the solver were exact.
 [[nodiscard]] double largest_joint_gap_m(const World& world);
+/// [N] sum in W of the forces on each module; with `touched`, only of those of what is touched.
+[[nodiscard]] std::vector<Eigen::Vector3d> module_forces_n(const World& world, std::optional<Touched> touched = {});
 /// [N^2] mean over the modules of the squared force of the ground on a module.
 [[nodiscard]] double ground_force_square_n2(const World& world);
 
