@@ -41,7 +41,7 @@ compare() {
   /usr/bin/python3 "$root/tests/bench/commits/measure.py" --old "$programs/constrictor" \
     --new "$root/build/release/bin/constrictor" --output "$output" "${options[@]}" "$@"
 }
-compare --names a,b --check
+compare --names a b --check
 if [ -n "$commit" ] && [ -n "$programs" ]; then fail "found $commit and --programs, accepted one of them"; fi
 
 if [ -n "$programs" ]; then
@@ -64,4 +64,4 @@ else
   programs=$tree/build/release/bin
 fi
 (cd "$root" && ./scripts/setup.sh core && ./scripts/build.sh)
-compare --names "$name,$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo here)" -- "$@"
+compare --names "$name" "$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo here)" -- "$@"

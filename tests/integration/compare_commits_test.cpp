@@ -40,7 +40,8 @@ class CompareCommits : public ::testing::Test {
                                    "--new",
                                    after.string(),
                                    "--names",
-                                   "old,new",
+                                   "old",
+                                   "new",
                                    "--output",
                                    (dir_.path() / "out").string()};
     words.insert(words.end(), options.begin(), options.end());
@@ -76,6 +77,16 @@ TEST_F(CompareCommits, ARunWithoutAReportIsNamedWithWhatItSaid) {
   ASSERT_EQ(run.wait(60s), 1);
   EXPECT_NE(run.errors().find("out/quiet_1_new/report/report.json"), std::string::npos) << run.errors();
   EXPECT_NE(run.errors().find("there is no engine"), std::string::npos) << run.errors();
+}
+
+TEST_F(CompareCommits, TheReportOfAnEarlierCallIsNotTakenForThatOfARun) {
+  const auto good = program("before", "4.0", R"({"name": "physics", "cpu_s": 3.0, "max_pss_mib": 20})");
+  Process first = compare(good, good, {"--runs", "1", "--conditions", "quiet"});
+  ASSERT_EQ(first.wait(60s), 0) << first.errors();
+  const auto refused = program("after", "4.0", "", "echo there is no scenario; exit 64");
+  Process second = compare(good, refused, {"--runs", "1", "--conditions", "quiet"});
+  EXPECT_EQ(second.wait(60s), 1);
+  EXPECT_NE(second.errors().find("there is no scenario"), std::string::npos) << second.errors();
 }
 
 TEST_F(CompareCommits, WrongOptionsAreRefusedBeforeARun) {

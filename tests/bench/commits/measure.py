@@ -7,6 +7,7 @@ import argparse
 import ctypes
 import json
 import os
+import shutil
 import signal
 import statistics
 import subprocess
@@ -56,6 +57,7 @@ class Loops:
 def run_once(command, arguments, folder, condition):
     """Does one run, and returns what its report says. Ends this program if the run gives no report."""
     folder.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(folder / "report", ignore_errors=True)  # the report of an earlier call is not that of this run
     log = folder / "output.txt"
     words = ["taskset", "-c", "0"] if condition == "one_core" else []
     words += [str(command), "run", *arguments, "--report", str(folder / "report")]
@@ -122,7 +124,7 @@ def main():
     parser = Parser(add_help=False)
     parser.add_argument("--old", required=True, type=Path)
     parser.add_argument("--new", required=True, type=Path)
-    parser.add_argument("--names", required=True)
+    parser.add_argument("--names", required=True, nargs=2)
     parser.add_argument("--output", required=True, type=Path)
     parser.add_argument("--runs", type=whole(1, 100), default=3)
     parser.add_argument("--conditions", default=",".join(CONDITIONS))
@@ -135,7 +137,6 @@ def main():
             parser.error(f"--conditions: found '{condition}', accepted one or more of {','.join(CONDITIONS)}")
     if options.check:
         return
-    names = options.names.split(",")
     arguments = options.arguments or ["case_study", "--seed", "1"]
     results = {}
     for condition in conditions:
@@ -145,11 +146,11 @@ def main():
                 folder = options.output / f"{condition}_{number}_{'old' if side == 0 else 'new'}"
                 run = run_once(command, arguments, folder, condition)
                 results[condition][side].append(run)
-                print(f"{condition}, run {number} of {options.runs}, {names[side]}: {run['factor']:.2f} times real "
+                print(f"{condition}, run {number} of {options.runs}, {options.names[side]}: {run['factor']:.2f} times real "
                       f"time, {cpu_ms(run):.0f} CPU ms for a simulated second"
                       f"{'' if run['success'] else '; the mission failed'}", flush=True)
-    table = tables(results, names)
     (options.output / "comparison.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    table = tables(results, options.names)
     (options.output / "comparison.md").write_text(table, encoding="utf-8")
     print(f"\n{table}\n{options.output}/comparison.md")
 

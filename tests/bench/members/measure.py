@@ -69,12 +69,15 @@ def measure(program, members, measured, folder):
             processes.append(subprocess.Popen(arguments, env=environment, text=True, stderr=errors,
                                               stdout=subprocess.PIPE if name == "member_1" else subprocess.DEVNULL))
         late = threading.Timer(PATIENCE_S, processes[1].kill)
+        late.daemon = True  # Ctrl-C must not wait for it
         late.start()
-        for line in processes[1].stdout:
-            if line.startswith("tick ") and int(line.split()[1]) in marks:
-                times.append(cpu_s(processes))
-                wakes.append(wake_ups(processes))
-        late.cancel()
+        try:
+            for line in processes[1].stdout:
+                if line.startswith("tick ") and int(line.split()[1]) in marks:
+                    times.append(cpu_s(processes))
+                    wakes.append(wake_ups(processes))
+        finally:
+            late.cancel()
         if len(times) == len(marks):
             for process in processes:
                 process.wait(PATIENCE_S)

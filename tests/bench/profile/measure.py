@@ -124,6 +124,8 @@ def measure(options):
                            stderr=subprocess.DEVNULL, timeout=PATIENCE_S)
             with open(os.path.join(report, "report.json"), encoding="utf-8") as file:
                 simulated_s = json.load(file)["sim_time_s"]
+            if simulated_s <= 0.0:
+                raise ValueError("it made no tick")
             samples = read_samples(data, build)
         except (OSError, ValueError, KeyError, subprocess.SubprocessError) as error:
             # A case study that fails without perf, too, fails in the next step of scripts/bench.sh.

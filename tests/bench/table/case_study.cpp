@@ -12,8 +12,8 @@ using nlohmann::json;
 
 /// What a process may need at most. `share` limits its CPU time for a second of simulated time: it is divided by the
 /// CPU time of the benchmark that runs the physics by itself, measured in the same run of the benchmarks, so that it
-/// does not depend on the speed of the machine. Both limits are 1.3 times the measured values; README.md says how to
-/// derive them again.
+/// does not depend on the speed of the machine. Both limits are 1.3 times values that were measured; README.md has
+/// these values, and says how to derive the limits again.
 struct Budget {
   double share;
   double pss_mib;  ///< proportional set size: memory that processes share counts in parts

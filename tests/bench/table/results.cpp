@@ -1,13 +1,18 @@
 #include "bench/table/results.hpp"
 
+#include <array>
 #include <fstream>
 
-#include "bench/median.hpp"
+#include "configuration/quantiles.hpp"
 
 namespace constrictor::bench {
 namespace {
 
 using nlohmann::json;
+
+/// The files of scripts/bench.sh in the form of Google Benchmark. The folder may hold other files.
+constexpr std::array kParts{"world.json",  "tick.json",    "camera.json",   "perception.json",
+                            "growth.json", "members.json", "renderers.json"};
 
 /// [ms] CPU time of a result; a part that measures itself reports its time as the real one.
 double time_ms(const json& result, const std::string& name) {
@@ -20,16 +25,15 @@ double time_ms(const json& result, const std::string& name) {
 
 Results::Results(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::map<std::string, std::vector<double>> repetitions;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
-    if (entry.path().extension() != ".json" || entry.path().filename() == "bench.json") continue;
-    for (const json& result : benchmarks(entry.path().filename())) {
+  for (const char* part : kParts) {
+    for (const json& result : benchmarks(part)) {
       if (result.value("run_type", "") != "iteration") continue;
       const std::string name = result.value("name", "");
       if (result.value("error_occurred", false)) errors_[name] = result.value("error_message", "");
       else repetitions[name].push_back(time_ms(result, name));
     }
   }
-  for (const auto& [name, values] : repetitions) times_ms_[name] = median(values);
+  for (const auto& [name, values] : repetitions) times_ms_[name] = interpolated_quantile(values, 0.5);
 }
 
 std::map<std::string, double> Results::group_ms(const std::string& group) const {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "bench/median.hpp"
 #include "component/data_path.hpp"
+#include "configuration/quantiles.hpp"
 #include "sim/scenario_loader/scenario_file.hpp"
 #include "sim/world/ground_torques.hpp"
 #include "sim/world/mechanism.hpp"
@@ -32,7 +32,7 @@ double clock_s() {
       const double from_s = wall_time_s();
       differences.push_back(wall_time_s() - from_s);
     }
-    return median(differences);
+    return interpolated_quantile(differences, 0.5);
   }();
   return found;
 }
@@ -128,7 +128,7 @@ double RecordedTicks::run(std::size_t tick, Part part) {
 double RecordedTicks::measure(std::size_t tick, Part part) {
   std::vector<double> found_s;
   for (int i = 0; i < kRepetitions; ++i) found_s.push_back(run(tick, part));
-  return median(found_s);
+  return interpolated_quantile(found_s, 0.5);
 }
 
 bool RecordedTicks::exact() {
