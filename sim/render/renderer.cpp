@@ -5,7 +5,6 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "sim/render/bodies.hpp"
 #include "sim/render/gl_handles.hpp"
@@ -86,7 +85,7 @@ class Renderer::Implementation {
   GlTexture pattern_;
   ShadowMap shadow_map_, coarse_shadow_map_, no_shadows_;
   ImageTargets targets_;
-  bool has_drawn_ = false;
+  ShaderCompilerMemory compiler_memory_;
 };
 
 Renderer::Implementation::Implementation(const Scene& scene, const RenderOptions& options)
@@ -276,8 +275,7 @@ const std::vector<std::uint8_t>& Renderer::Implementation::draw(const ScenePoses
   draw_image(target, camera, view, shadow, draw_shadow_map(camera, view, shadow, shadow_size));
   const std::vector<std::uint8_t>& rgb = target.read();
   check_gl("drawing");
-  // The first frame compiled the shaders.
-  if (!std::exchange(has_drawn_, true)) release_shader_compiler();
+  compiler_memory_.after_image();
   return rgb;
 }
 

@@ -3,6 +3,7 @@
 #include <link.h>
 #include <malloc.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -41,6 +42,18 @@ int release_pages(dl_phdr_info* library, std::size_t, void*) {
 void release_shader_compiler() {
   ::dl_iterate_phdr(release_pages, nullptr);
   (void)::malloc_trim(0);
+}
+
+void ShaderCompilerMemory::after_image() {
+  constexpr long kManyFaults = 100;  // an image without a new shader has none or a few, one with a new shader hundreds
+  const auto faults = [] {
+    rusage usage{};
+    ::getrusage(RUSAGE_THREAD, &usage);
+    return usage.ru_minflt + usage.ru_majflt;
+  };
+  const long now = faults();
+  if (now - page_faults_ > kManyFaults) release_shader_compiler();
+  page_faults_ = now;
 }
 
 }  // namespace constrictor

@@ -7,4 +7,15 @@ namespace constrictor {
 /// the kernel reads the code from the file again, page by page.
 void release_shader_compiler();
 
+/// Calls release_shader_compiler() after those images for which a shader was compiled, or read from the cache. OpenGL
+/// does not say so, but the thread that draws then meets many pages of memory that it has not used before.
+class ShaderCompilerMemory {
+ public:
+  /// Call after each image, in the thread that draws.
+  void after_image();
+
+ private:
+  long page_faults_ = 0;  ///< of this thread until the last call
+};
+
 }  // namespace constrictor

@@ -40,6 +40,17 @@ TEST(ShaderCompiler, TakesNoMemoryAfterTheFirstFrame) {
   EXPECT_LT(resident_compiler_kib(), 4096) << "a second frame needs no compiler";
 }
 
+// The robot often sees its first object long after the first frame.
+TEST(ShaderCompiler, TakesNoMemoryAfterALaterFrameThatNeedsAnotherShader) {
+  Renderer renderer(testing::busy_scene(), {});
+  PinholeCamera sky = testing::scene_camera();
+  sky.X_WC = look_at({0.5, -2.0, 1.5}, {0.6, -2.0, 30.0});
+  static_cast<void>(renderer.draw(testing::busy_poses(), sky, {}));
+  const auto later = renderer.draw(testing::busy_poses(), testing::scene_camera(), {});
+  EXPECT_LT(resident_compiler_kib(), 4096);
+  EXPECT_EQ(later, Renderer(testing::busy_scene(), {}).draw(testing::busy_poses(), testing::scene_camera(), {}));
+}
+
 // Samples and a glossy ground need other shaders.
 TEST(ShaderCompiler, WorksAgainAfterItsMemoryWasGivenBack) {
   auto scene = testing::busy_scene();
