@@ -22,7 +22,7 @@ set(CONSTRICTOR_LAYERS
   "components/lib/client => idl|components/lib/(component|configuration|cyclone|log)"
   "components/lib/runtime => idl|components/lib/(barrier|comp.*|configuration|cyclone|.*faults|log|recording|sched.*)"
   "components/tools/host => .*"
-  "components/tools/pictures => .*"
+  "components/tools/pictures => idl|components/([a-z_]+|lib/.*|tools/common|tools/host)|sim/.*"
   "components/tools/views => idl|components/lib/(configuration|recording|robot)"
   "components/tools/cli => idl|components/lib/.*|components/tools/(common|views)|sim/scenario_loader"
   "components/tools/dashboard => idl|components/lib/.*|components/tools/(common|views)"

@@ -150,6 +150,8 @@ constexpr Inclusion kForbidden[] = {
     {"components/lib/runtime/host.cpp", "robot/robot_model.hpp"},
     {"components/tools/cli/usage.cpp", "sim/world/world.hpp"},
     {"components/tools/dashboard/main.cpp", "sim/scenario_loader/scenario.hpp"},
+    {"components/tools/dashboard/main.cpp", "cli/usage.hpp"},
+    {"components/tools/pictures/main.cpp", "cli/usage.hpp"},
     {"sim/camera/camera.cpp", "perception/perception.hpp"},
     {"sim/camera/camera.cpp", "runtime/host.hpp"},
 };
