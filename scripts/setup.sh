@@ -7,8 +7,8 @@
 #   all       all of these: what all programs need
 #   tests     what the tests and benchmarks need in addition to core, which is all, and Fast DDS with its Java runtime
 #   tools     what formatting, static analysis and the documentation need in addition
-#   bench     MuJoCo, with which a benchmark compares physics and rendering, ddsperf, with which it compares the
-#             messages, and perf, which shows the CPU time by groups of functions
+#   bench     MuJoCo, with which a benchmark compares physics and rendering, and perf, which shows the CPU time by
+#             groups of functions
 #   browser   Chromium, for the long test of the dashboard's page
 #   cluster   GNU parallel and Slurm, for scripts/evaluate_on_hosts.sh and scripts/evaluate_slurm.sh and their long test
 #   package   what scripts/package.sh needs in addition to make Debian packages

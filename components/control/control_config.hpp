@@ -82,11 +82,12 @@ struct ControlConfig : ParameterSet {
   MotionParameters leave = add(leave, "leave", {0, 0.5, 0.9, 0.27}, "Backing off with an open U");
   double lookahead_m = add(lookahead_m, "path.lookahead_m", 0.5, "m", {0.05, 2.0}, kWhileRunning,
                            "The body steers towards the point of the path this far ahead of the head");
-  double most_curvature_1_m =
-      add(most_curvature_1_m, "path.most_curvature_1_m", 1.2, "1/m", {0.05, 5.0}, kWhileRunning,
-          "Largest curvature of the way to a path of several pieces; a single arc is followed as it is");
-  double carry_curvature_1_m = add(carry_curvature_1_m, "path.carry_curvature_1_m", 1.0, "1/m", {0.05, 5.0},
-                                   kWhileRunning, "The same for a body in a posture, such as a U with an object");
+  double most_curvature_1_m = add(
+      most_curvature_1_m, "path.most_curvature_1_m", 1.2, "1/m", {0.05, 5.0}, kWhileRunning,
+      "Largest curvature with which the robot steers to a path of several pieces; a single arc is followed as it is");
+  double carry_curvature_1_m =
+      add(carry_curvature_1_m, "path.carry_curvature_1_m", 1.0, "1/m", {0.05, 5.0}, kWhileRunning,
+          "The same as most_curvature_1_m for a body in a posture, such as a U with an object");
   double most_hz = add(most_hz, "wave.most_hz", 1.2, "Hz", {0.05, 2.0}, kWhileRunning,
                        "Most undulations per second: a faster motion stays slower than desired");
   WaveWeights weights{
@@ -152,7 +153,7 @@ struct ControlConfig : ParameterSet {
       add(obstacles.alone_s, "obstacle_aided.alone_s", 3.0, "s", {0.1, 1000.0}, kWhileRunning,
           "Time without support after which the robot moves sideways to find other obstacles"),
       add(obstacles.search_s, "obstacle_aided.search_s", 2.0, "s", {0.1, 100.0}, kWhileRunning,
-          "Time for which it moves sideways")};
+          "Time for which the robot moves sideways in a search")};
   double base_bend_rad = add(base_bend_rad, "squeeze.base_bend_rad", 0.5, "rad", {0.1, 1.5}, kAtStart,
                              "Joints of the posture that are bent by more than this are the base of a U");
   double squeeze_rate_rad_s = add(squeeze_rate_rad_s, "squeeze.rate_rad_s", 0.2, "rad/s", {0.001, 2.0}, kWhileRunning,
@@ -162,7 +163,8 @@ struct ControlConfig : ParameterSet {
   double speed_share = add(speed_share, "safety.speed_share", 0.8, "", {0.01, 1.0}, kAtStart,
                            "Share of the servos' maximum speed that control uses");
   double lead_s = add(lead_s, "safety.lead_s", 0.06, "s", {0.02, 1.0}, kAtStart,
-                      "Largest lead of a setpoint over a joint that cannot follow: the way at full speed in this time");
+                      "A setpoint leads a joint that cannot follow by the angle of its torque limit, plus at most the "
+                      "way at full speed in this time");
   std::int64_t hold_after_ticks =
       add(hold_after_ticks, "safety.hold_after_ticks", 10, "ticks", {2, 1000}, kAtStart,
           "Control holds the posture when the newest desired trajectory is older than this");

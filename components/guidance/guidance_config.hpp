@@ -56,20 +56,21 @@ struct GuidanceConfig : ParameterSet {
   double speed_sd_m_s = add(speed_sd_m_s, "odometry.speed_sd_m_s", 0.01, "m/s", {0.0, 1.0}, kAtStart,
                             "Standard deviation of the estimated velocity, added at any speed");
   double pushing_speed_sd = add(pushing_speed_sd, "odometry.pushing_speed_sd", 0.4, "", {0.0, 10.0}, kWhileRunning,
-                                "The first of the two, of a robot without a skin beside an object that it may push");
+                                "speed_sd of a robot without a skin beside an object that it may push");
   double lifting_rad_s = add(lifting_rad_s, "odometry.lifting_rad_s", 0.05, "rad/s", {0.0, 10.0}, kWhileRunning,
                              "Mean rate of the pitch joints above which modules leave the ground");
   double lifting_speed_sd_m_s =
       add(lifting_speed_sd_m_s, "odometry.lifting_speed_sd_m_s", 0.3, "m/s", {0.0, 10.0}, kWhileRunning,
           "Standard deviation of the estimated velocity while modules leave the ground");
-  double lifting_correlation_s = add(lifting_correlation_s, "odometry.lifting_correlation_s", 10.0, "s", {0.01, 1000.0},
-                                     kWhileRunning, "Time over which that error of the velocity stays the same");
+  double lifting_correlation_s =
+      add(lifting_correlation_s, "odometry.lifting_correlation_s", 10.0, "s", {0.01, 1000.0}, kWhileRunning,
+          "Time over which the error of the velocity stays the same while modules leave the ground");
   double correlation_s = add(correlation_s, "odometry.correlation_s", 0.7, "s", {0.01, 10.0}, kAtStart,
                              "Time over which the error of the estimated velocity stays the same");
   double scale_sd = add(scale_sd, "odometry.scale_sd", 0.03, "", {0.0, 1.0}, kWhileRunning,
                         "Standard deviation of the factor between the true and the estimated drift");
   double unmeasured_scale_sd = add(unmeasured_scale_sd, "odometry.unmeasured_scale_sd", 0.25, "", {0.0, 1.0},
-                                   kWhileRunning, "The same without measured forces of the ground");
+                                   kWhileRunning, "scale_sd without measured forces of the ground");
   double scale_s = add(scale_s, "odometry.scale_s", 30.0, "s", {0.1, 1e4}, kWhileRunning,
                        "Time over which this factor stays the same");
   double yaw_sd_rad_sqrt_s = add(yaw_sd_rad_sqrt_s, "odometry.yaw_sd_rad_sqrt_s", 0.003, "rad/sqrt(s)", {0.0, 1.0},

@@ -17,8 +17,7 @@ constexpr double kFrontArm_m = 0.75;  // a U with a shorter front arm (16 module
 constexpr int kFrontJoints = 4;
 constexpr int kBothJoints = 3;
 
-// A wave needs three links to travel: two stand. With yaw joints 0.4 m apart none of six missions succeeded, with 0.3 m
-// two of four.
+// A wave needs three links to travel: two stand. Missions with other distances of the yaw joints are in the README.
 constexpr double kWavelength_m = 1.07;  // of control's gaits without an object
 constexpr double kLinksPerWave = 3.0;
 

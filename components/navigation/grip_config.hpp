@@ -39,17 +39,18 @@ struct GripConfig : ParameterSet {
   double opened_rad = add(opened_rad, "opened_rad", 0.45, "rad", bounds::kAngle, kWhileRunning,
                           "If the arms have opened the base by this sum of angles, a larger torque closes it");
   double closing_torque_nm = add(closing_torque_nm, "closing_torque_nm", 4.0, "Nm", bounds::kTorque, kWhileRunning,
-                                 "The torque that closes it");
+                                 "Torque that closes a base that the arms have opened");
   double lost_torque_nm = add(lost_torque_nm, "lost_torque_nm", 0.75, "Nm", bounds::kTorque, kWhileRunning,
                               "Mean closing torque of the base below which a held object may be lost");
   double lost_contact_share = add(lost_contact_share, "lost_contact_share", 0.25, "", bounds::kShare, kWhileRunning,
                                   "Share of time with a touch of the base below which a held object may be lost");
-  double untouched_share = add(untouched_share, "untouched_share", 0.05, "", bounds::kShare, kWhileRunning,
-                               "Share of time with a touch of the base below which it is lost whatever the torque");
-  double lost_filter_s =
-      add(lost_filter_s, "lost_filter_s", 1.0, "s", bounds::kTime, kAtStart, "Time constant of the low-pass on both");
+  double untouched_share =
+      add(untouched_share, "untouched_share", 0.05, "", bounds::kShare, kWhileRunning,
+          "Share of time with a touch of the base below which the object is lost whatever the torque");
+  double lost_filter_s = add(lost_filter_s, "lost_filter_s", 1.0, "s", bounds::kTime, kAtStart,
+                             "Time constant of the low-pass on the torque and on the share of time with a touch");
   double lost_after_s = add(lost_after_s, "lost_after_s", 2.0, "s", bounds::kTime, kWhileRunning,
-                            "An object is lost after both have been too low for this time");
+                            "An object is lost after torque and touch have been too low for this time");
   double touch_force_n = add(touch_force_n, "touch_force_n", 0.4, "N", bounds::kForce, kWhileRunning,
                              "Weakest force that counts as a touch");
 };

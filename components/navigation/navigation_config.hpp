@@ -25,7 +25,7 @@ struct FollowLineConfig : NavigationSection {
   double carry_room_m = add(carry_room_m, "carry_room_m", 0.25, "m", bounds::kLength, kWhileRunning,
                             "Wanted distance between the arms of the U and obstacles of the map");
   double carry_ahead_m = add(carry_ahead_m, "carry_ahead_m", 1.2, "m", bounds::kLength, kWhileRunning,
-                             "Obstacles that are this far before the head count");
+                             "Obstacles count up to this distance ahead of the foremost module");
   double end_reached_m = add(end_reached_m, "end_reached_m", 0.35, "m", bounds::kLength, kWhileRunning,
                              "Distance of the head from the end of the line at which the end is reached");
   int end_images = add(end_images, "end_images", 3, "images", {1, 100}, kAtStart,
@@ -115,7 +115,7 @@ struct PregraspConfig : NavigationSection {
   double settle_s = add(settle_s, "settle_s", 0.8, "s", bounds::kTime, kAtStart,
                         "The body stands for this time before the touch movement");
   double touch_rate_rad_s = add(touch_rate_rad_s, "touch_rate_rad_s", 0.12, "rad/s", bounds::kSpeed, kAtStart,
-                                "Speed of each of the three joints next to the head in the touch movement");
+                                "Speed of each of the three joints that bend in the touch movement");
   double touch_limit_rad = add(touch_limit_rad, "touch_limit_rad", 0.3, "rad", bounds::kAngle, kAtStart,
                                "Largest angle of each of these joints");
   double touch_further_rad = add(touch_further_rad, "touch_further_rad", 0.1, "rad", bounds::kAngle, kAtStart,
@@ -191,9 +191,9 @@ struct DropConfig : NavigationSection {
   double room_m = add(room_m, "room_m", 0.08, "m", bounds::kLength, kAtStart,
                       "Distance to another object on the zone before which the object is let go");
   double lookahead_m = add(lookahead_m, "lookahead_m", 1.3, "m", bounds::kLength, kWhileRunning,
-                           "Distance from the object to the point before it that is steered to the course");
+                           "Distance ahead of the object at which the point lies that the robot steers to the course");
   double pivot_m = add(pivot_m, "pivot_m", 0.3, "m", bounds::kLength, kWhileRunning,
-                       "Distance from the object to the point that turns of the U do not move sideways");
+                       "Distance from the object to the point of the U that does not move sideways when the U turns");
   double crab_filter_s = add(crab_filter_s, "crab_filter_s", 2.0, "s", {0.02, 600.0}, kWhileRunning,
                              "Time constant of the low-pass on the angle between the course and the U on a slope");
   double open_angle_rad = add(open_angle_rad, "open_angle_rad", 0.873, "rad", bounds::kAngle, kAtStart,

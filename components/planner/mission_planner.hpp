@@ -130,7 +130,9 @@ class MissionPlanner {
   [[nodiscard]] bool may_try_again(Attempts& tried, const char* state, const std::string& why) const;
   /// Puts the present object aside. Returns the state in which the next one is looked for.
   [[nodiscard]] MissionState put_aside();
-  /// Counts a recovery and returns `to`, another attempt, or kFailed after too many. `why`: the reason, for people.
+  /// Counts a recovery and returns the next state: kFailed after too many recoveries; instead of kSearchObject, what
+  /// try_differently() chooses; from kSearchObject to a search for the line, what search_elsewhere() chooses; otherwise
+  /// `to`. `why`: the reason, for people.
   [[nodiscard]] MissionState recover(MissionState to, const std::string& why = "the object was lost");
   /// The attempts with the present object.
   [[nodiscard]] Attempts& attempts() { return attempts(memory_.object_index); }

@@ -30,7 +30,8 @@ struct PlannerConfig : ParameterSet {
                               "Where zones may lie, unless the scenario states it");
   double end_zone_m = add(end_zone_m, "end_zone_m", 2.0, "m", {0.0, 20.0}, kAtStart,
                           "An end of the line is among zones if one was nearer than this");
-  double end_zone_s = add(end_zone_s, "end_zone_s", 3.0, "s", {0.0, 600.0}, kAtStart, "and was seen within this time");
+  double end_zone_s = add(end_zone_s, "end_zone_s", 3.0, "s", {0.0, 600.0}, kAtStart,
+                          "Time within which that zone must have been seen");
   double end_search_s = add(end_search_s, "end_search_s", 30.0, "s", {1, 3600}, kAtStart,
                             "Time limit of search object where zones may be anywhere along the line");
   double object_probability = add(object_probability, "object_probability", 0.5, "", {0.0, 1.0}, kAtStart,
@@ -46,9 +47,8 @@ struct PlannerConfig : ParameterSet {
           "After a drop, the planner ignores an object that is nearer than this to the zone of its colour");
   double zone_radius_m = add(zone_radius_m, "zone_radius_m", kUsualZoneRadius_m, "m", kZoneRadiusBounds_m, kAtStart,
                              "Radius of a zone of which no image has shown the whole width");
-  double seen_sd_m =
-      add(seen_sd_m, "seen_sd_m", 0.12, "m", {0.01, 5}, kAtStart,
-          "A dropped object was seen when the standard deviation of its place in the map is at most this");
+  double seen_sd_m = add(seen_sd_m, "seen_sd_m", 0.12, "m", {0.01, 5}, kAtStart,
+                         "A dropped object counts as seen when the standard deviation of its place is at most this");
   double inspect_s = add(inspect_s, "inspect_s", 20.0, "s", {1, 600}, kAtStart,
                          "Longest time of the look at a dropped object; then the likelier case counts");
   double step_back_s = add(step_back_s, "step_back_s", 2.0, "s", {0.1, 60}, kAtStart,
@@ -81,16 +81,18 @@ struct PlannerConfig : ParameterSet {
                       "Distance between obstacles and a free way to the line; nearer ones catch the arms of the U");
   double carry_room_m = add(carry_room_m, "carry_room_m", 0.3, "m", {0, 5}, kAtStart,
                             "Distance between obstacles and a free way with an object");
-  double carry_ahead_m = add(carry_ahead_m, "carry_ahead_m", 0.3, "m", {0, 5}, kAtStart,
-                             "A search with an object backs off from an obstacle so near before the head");
-  double standstill_m = add(standstill_m, "standstill_m", 0.3, "m", {0.05, 100}, kAtStart,
-                            "A robot with an object stands still while the object stays this near to one place");
+  double carry_ahead_m =
+      add(carry_ahead_m, "carry_ahead_m", 0.3, "m", {0, 5}, kAtStart,
+          "A search with an object backs off from an obstacle that is nearer than this before the head");
+  double standstill_m =
+      add(standstill_m, "standstill_m", 0.3, "m", {0.05, 100}, kAtStart,
+          "A robot with an object counts as standing still while the object stays this near to one place");
   double standstill_s = add(standstill_s, "standstill_s", 30.0, "s", {1, 3600}, kAtStart,
                             "After this time a search leads the robot away: backwards, round, and forwards");
   double after_end_s = add(after_end_s, "after_end_s", 8.0, "s", {0, 600}, kAtStart,
                            "The planner ignores the line for this time after its end");
-  double turn_round_s =
-      add(turn_round_s, "turn_round_s", 20.0, "s", {1, 600}, kAtStart, "Longest time of turning back after a drop");
+  double turn_round_s = add(turn_round_s, "turn_round_s", 20.0, "s", {1, 600}, kAtStart,
+                            "Longest time of turning round without an object");
   double turn_back_s = add(turn_back_s, "turn_back_s", 40.0, "s", {1, 600}, kAtStart,
                            "Longest time of turning back to the line with an object, which takes a circle");
   double search_timeout_s = add(search_timeout_s, "search_timeout_s", 180.0, "s", {1, 3600}, kAtStart,
@@ -113,7 +115,7 @@ struct PlannerConfig : ParameterSet {
                                        kAtStart, "Longest pause between a refused request and the next one");
   double refused_timeout_s =
       add(refused_timeout_s, "refused_timeout_s", 120.0, "s", {1, 86400}, kAtStart,
-          "The mission fails when navigation has accepted no request, or not the same task, for this time");
+          "The mission fails when navigation has accepted no request, or refused the same task, for this time");
   double suspended_timeout_s =
       add(suspended_timeout_s, "suspended_timeout_s", 3600.0, "s", {1, 86400}, kAtStart,
           "The mission fails after such a time of another source's authority, or of a latched stop");

@@ -39,8 +39,7 @@ struct RefusalMemory {
 };
 
 /// Decides when a request may follow after refusals. All times are active times of the mission [s]. The pauses double
-/// with each refusal, from `refused_pause_s` to `refused_longest_pause_s`. A refusal does not count as a failed attempt
-/// or as a recovery.
+/// with each refusal, from `refused_pause_s` to `refused_longest_pause_s`.
 class Refusals {
  public:
   Refusals(const PlannerConfig& config, RefusalMemory& memory) : config_(config), memory_(memory) {}

@@ -1,4 +1,4 @@
-// The file camera.json in the run's output folder: how the camera is.
+// The file camera.json in the run's output folder: the state of the camera (connection, rate, missing frames).
 #pragma once
 
 #include "component/device_record.hpp"

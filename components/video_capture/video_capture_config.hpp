@@ -21,13 +21,13 @@ struct VideoCaptureConfig : ParameterSet {
   double frame_rate_hz = add(frame_rate_hz, "stream.frame_rate_hz", 10.0, "Hz", {0.5, 240.0}, kAtStart,
                              "Frames in a second: asked of a device, promised by a stream, shown of a file");
   int stream_width = add(stream_width, "stream.width", 0, "pixels", {0, 4096}, kAtStart,
-                         "Width that is asked of a device; 0: as it likes");
+                         "Width that is asked of a device; 0: the device chooses");
   int stream_height = add(stream_height, "stream.height", 0, "pixels", {0, 4096}, kAtStart,
-                          "Height that is asked of a device; 0: as it likes");
+                          "Height that is asked of a device; 0: the device chooses");
   double delay_s = add(delay_s, "stream.delay_s", 0.0, "s", {0.0, 2.0}, kAtStart,
                        "Time from the exposure of a frame until this host receives it");
   double late_after_s = add(late_after_s, "stream.late_after_s", 0.5, "s", {0.02, 10.0}, kAtStart,
-                            "A frame that was exposed longer ago is not published");
+                            "A frame that was exposed longer ago than this is not published");
   double gone_after_s = add(gone_after_s, "stream.gone_after_s", 1.0, "s", {0.1, 60.0}, kAtStart,
                             "Without a frame for so long, the camera is reported as gone");
   double timeout_s = add(timeout_s, "stream.timeout_s", 1.0, "s", {0.2, 30.0}, kAtStart,

@@ -1,6 +1,6 @@
-// Attacks on a run from another participant, without DDS Security: the token and the announced writers must keep what
-// is forged away from the result, and what strangers send may cost neither much memory nor many log lines. The figures
-// are in tests/README.md.
+// Attacks on a run from another participant, without DDS Security: the token and the announced writers must
+// prevent forged messages from changing the result, and messages of strangers may cost only little memory and few log
+// lines. The figures are in tests/README.md.
 #include <numeric>
 
 #include "integration/attacked_run.hpp"

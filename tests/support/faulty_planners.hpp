@@ -14,7 +14,8 @@
 
 namespace constrictor::testing {
 
-/// Each with the check of `constrictor conform planner` that must name it.
+/// The faults. Each has the check of `constrictor conform planner` that must fail, and a part of the text that it must
+/// report.
 inline std::vector<NamedFault> planner_faults() {
   return {{"silent", "arrives", "no mission_status"},
           {"asks_nothing", "search", "no request"},

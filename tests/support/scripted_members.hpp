@@ -49,19 +49,20 @@ class ScriptedMember : public Component {
   Timing timing_;
 };
 
-/// The plant `physics` with this `sample`.
+/// A stand-in for the plant, registered as `physics`, with this `sample`.
 inline ComponentFactory scripted_plant(WireFunction wire) {
   return {"physics", [wire = std::move(wire)](Wiring& wiring, const Setup&) {
             return std::make_unique<ScriptedPlant>(wire(wiring));
           }};
 }
 
-/// The plant `physics` that measures nothing.
+/// A stand-in for the plant, registered as `physics`, that measures nothing.
 inline ComponentFactory idle_plant() {
   return {"physics", [](Wiring&, const Setup&) { return std::make_unique<PlantBase>(); }};
 }
 
-/// The plant `physics` of a straight robot that stands still and touches nothing. Writes JointState and ContactState.
+/// A stand-in for the plant, registered as `physics`: a straight robot that stands still and touches nothing. Writes
+/// JointState and ContactState.
 inline ComponentFactory still_robot(std::uint16_t joint_count = 23) {
   return scripted_plant([joint_count](Wiring& wiring) -> StepFunction {
     return [joint_count, joints = wiring.output(topics::kJointState),

@@ -37,8 +37,7 @@ struct RunKey {
 };
 
 /// A note that other programs of this user can read until this object is destroyed, and beside it a file with the run's
-/// token for the processes of the run. The owner of this object must hold the claim of
-/// the domain.
+/// token for the processes of the run. The owner of this object must hold the claim of the domain.
 class PublishedNote {
  public:
   explicit PublishedNote(const RunNote& note);

@@ -8,8 +8,8 @@ namespace constrictor {
 class DeviceOwner {
  public:
   virtual ~DeviceOwner() = default;
-  /// How the device is, for people, in at most 127 characters; the runtime publishes it in ComponentStatus. Empty: it
-  /// is not known yet.
+  /// The state of the device, for people, in at most 127 characters; the runtime publishes it in ComponentStatus.
+  /// Empty: it is not known yet.
   [[nodiscard]] virtual std::string device_status() const = 0;
   /// Whether the device follows the wall clock, so that only a run at real-time pace can drive it.
   [[nodiscard]] virtual bool needs_real_time() const { return false; }

@@ -1,5 +1,5 @@
-// A JSON file in the run's output folder in which the driver of a device writes, for people and tools, how the device
-// is.
+// A JSON file in the run's output folder with which the driver of a device reports the device's state to people and
+// tools.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class DeviceRecord {
   void add_duration(std::int64_t duration_ns) { durations_ns_.push_back(duration_ns); }
   /// Adds a line. The file shows the newest ones.
   void add_news(const std::string& line);
-  /// How the device was at the last replace(), in at most 127 characters for ComponentStatus; empty before.
+  /// The state of the device at the last replace(), in at most 127 characters for ComponentStatus; empty before.
   [[nodiscard]] const std::string& summary() const { return summary_; }
 
  protected:

@@ -13,8 +13,7 @@ namespace constrictor::dds {
 enum class Reach {
   /// The loopback interface, without multicast, up to 120 participants on this host; and the other hosts of a run on
   /// several hosts, see published_dds_configuration(). With the loopback interface alone nothing is sent to other
-  /// hosts,
-  /// but the sockets of Cyclone DDS 0.10 receive on every interface.
+  /// hosts, but the sockets of Cyclone DDS 0.10 receive on every interface.
   kLoopback,
   kNetwork,  ///< Cyclone DDS's default, which processes of ROS 2 use
 };

@@ -8,8 +8,7 @@ namespace constrictor::dds {
 
 /// A writer sends the samples that it keeps one after the other, the oldest first; a program that wants the newest must
 /// wait for the last of them. They have arrived when a sample arrives that was written after the reader began, or when
-/// none has arrived for a moment. Only now_ns() reads a clock; the other functions get
-/// times as arguments.
+/// none has arrived for a moment. Only now_ns() reads a clock; the other functions get times as arguments.
 class KeptSamples {
  public:
   using Time = std::chrono::steady_clock::time_point;

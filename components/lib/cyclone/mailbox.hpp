@@ -1,4 +1,4 @@
-// Datagrams that do not wake the process for which they are.
+// Datagrams that do not wake the process that receives them.
 #pragma once
 
 #include <sys/socket.h>

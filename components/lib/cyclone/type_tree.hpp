@@ -2,8 +2,8 @@
 // they were not compiled with.
 //
 // Cyclone's dds_create_topic_descriptor() does not replace this. It fails (DDS_RETCODE_UNSUPPORTED, Cyclone DDS 0.10.2)
-// for 9 of this project's 50 message types, all with a string as their key; the descriptors have no field names; and it
-// needs a writer with type information.
+// for message types with a string as their key; the descriptors have no field names; and it needs a writer with type
+// information.
 #pragma once
 
 #include <chrono>

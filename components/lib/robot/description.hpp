@@ -3,8 +3,8 @@
 // Frames of links: `base_link` is the head module, with the origin at its centre. The frame of every other module has
 // its origin on the axis of the joint to the module ahead, because a URDF file cannot put it elsewhere: half a module
 // ahead of the module's centre. `camera_optical` is the head's camera (z along the view, x right, y down),
-// `camera_NAME_optical` a further one. With all angles 0
-// all frames of modules have the same orientation: x forward, y left, z up.
+// `camera_NAME_optical` a further one. With all angles 0 all frames of modules have the same orientation: x forward, y
+// left, z up.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -87,7 +87,8 @@ void RunStore::copy_loop() {
       CheckpointFile::store_copy(folder_ / kCopy, checkpoint);
     } catch (const std::exception& error) {
       if (!std::exchange(reported, true))
-        log_.error("the checkpoint cannot be copied to the disk: {}; a reboot would lose the run", error.what());
+        log_.error("the checkpoint cannot be copied to the disk: {}; a reboot would lose the run since the last copy",
+                   error.what());
     }
     lock.lock();
     copying_ = false;

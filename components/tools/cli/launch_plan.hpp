@@ -65,9 +65,8 @@ struct LaunchPlan {
 
 /// Lets the components that constrictor_host hosts read all of their files, in one process that joins no run.
 /// Components with a program of their own are not checked, but whether a program of this project can host its group of
-/// components is. Throws ConfigurationError with one line for each component
-/// whose files are wrong, or if the program of a component on this host was not built. Returns the warnings: what the
-/// run may begin with, and often fails with.
+/// components is. Throws ConfigurationError with one line for each component whose files are wrong, or if the program
+/// of a component on this host was not built. Returns the warnings: what the run may begin with, and often fails with.
 [[nodiscard]] std::vector<std::string> check_components(const RunOptions& options, const LaunchPlan& plan);
 
 /// Prints them to standard error, which has no results.

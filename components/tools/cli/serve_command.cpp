@@ -175,8 +175,9 @@ void add_serve(CLI::App& app, Action& action) {
       "the\n"
       "run; when the run is over, it waits for the next one. Manifest, robot, scenario and seed must be the same on "
       "all\n"
-      "hosts; a process that differs is refused, and tries again every 10 s. Log lines go to the standard output.\n"
-      "SIGTERM or Ctrl-C stops all processes. The systemd unit constrictor@.service runs this command.",
+      "hosts; a process that differs is refused, and tries again after pauses that grow from 0.2 s to 10 s. Log lines\n"
+      "go to the standard output. SIGTERM or Ctrl-C stops all processes. The systemd unit constrictor@.service runs "
+      "this command.",
       {"constrictor serve --domain 7 --help", "constrictor serve physics camera control --domain 7",
        "constrictor serve planner report --domain 7 --output /var/lib/constrictor"},
       "0 ended by a signal; 64 wrong usage; 70 a process cannot be started; 78 wrong configuration; 127 no such "

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kPeriod_ns = 20'000'000;
 
-/// The ports of one component of the surroundings.
+/// The ports of one component that surrounds the part under test.
 class StandPorts {
  public:
   StandPorts(Wiring& wiring, const std::vector<const TopicInfo*>& writes, const std::vector<const TopicInfo*>& observes,

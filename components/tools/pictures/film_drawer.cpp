@@ -28,7 +28,7 @@ FilmDrawer::FilmDrawer(const RecordedStory& story, const FilmStyle& style, std::
 FilmDrawer::~FilmDrawer() = default;  // the futures wait for the threads, before the desks are gone
 
 void FilmDrawer::begin(const Seen& seen, figure::FilmFrame frame) {
-  if (full()) throw std::logic_error("FilmDrawer: begin() while all threads draw");
+  if (full()) throw std::logic_error("FilmDrawer: begin() was called while all threads draw; call take() first");
   Desk& desk = *desks_[next_];
   next_ = (next_ + 1) % desks_.size();
   drawn_.push_back(std::async(std::launch::async, [this, &desk, seen, frame = std::move(frame)]() mutable {

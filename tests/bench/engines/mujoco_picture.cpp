@@ -42,7 +42,8 @@ std::string bodies_of(const Scene& scene, const ScenePoses& poses) {
   return text;
 }
 
-/// `extent` is 1 m, so that lengths of the visual part are in metres.
+/// The scene as a MuJoCo model (MJCF). MuJoCo multiplies the lengths of `<visual>` (znear, zfar, shadowclip) by
+/// `extent`; this is 1 m, so that they are in metres.
 std::string model_text(const Scene& scene, const ScenePoses& poses, const PinholeCamera& camera,
                        const ShadowRegion& region, int shadow_map_size) {
   const Eigen::Matrix3d& R = camera.X_WC.linear();

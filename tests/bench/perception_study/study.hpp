@@ -42,9 +42,9 @@ struct LevelResult {
 /// The folder of the runs without errors, beside those of the factors.
 inline constexpr const char* kReferenceFolder = "reference";
 
-/// The results of a factor in the order of their levels, the reference among them. `study`: the folder that has
-/// `NAME/summary.json` of each evaluation. Levels and evaluations without a run are left out. Throws std::runtime_error
-/// if a file is damaged or does not belong to the factor.
+/// The results of one factor in the order of its levels, with the reference at its place among them. `study`: the
+/// folder that has `NAME/summary.json` of each evaluation. A level without a run is left out; so is a factor whose
+/// evaluation has no run. Throws std::runtime_error if a file is damaged or does not belong to the factor.
 [[nodiscard]] std::vector<LevelResult> read_results(const std::filesystem::path& study, const Factor& factor);
 
 /// A row for each level of each factor; RFC 4180.
