@@ -82,9 +82,9 @@ struct ControlConfig : ParameterSet {
   MotionParameters leave = add(leave, "leave", {0, 0.5, 0.9, 0.27}, "Backing off with an open U");
   double lookahead_m = add(lookahead_m, "path.lookahead_m", 0.5, "m", {0.05, 2.0}, kWhileRunning,
                            "The body steers towards the point of the path this far ahead of the head");
-  double most_curvature_1_m = add(
-      most_curvature_1_m, "path.most_curvature_1_m", 1.2, "1/m", {0.05, 5.0}, kWhileRunning,
-      "Largest curvature with which the robot steers to a path of several pieces; a single arc is followed as it is");
+  double most_curvature_1_m =
+      add(most_curvature_1_m, "path.most_curvature_1_m", 1.2, "1/m", {0.05, 5.0}, kWhileRunning,
+          "Largest curvature towards a path of several pieces; a single arc is followed as it is");
   double carry_curvature_1_m =
       add(carry_curvature_1_m, "path.carry_curvature_1_m", 1.0, "1/m", {0.05, 5.0}, kWhileRunning,
           "The same as most_curvature_1_m for a body in a posture, such as a U with an object");
