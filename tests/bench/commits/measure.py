@@ -146,8 +146,8 @@ def main():
                 folder = options.output / f"{condition}_{number}_{'old' if side == 0 else 'new'}"
                 run = run_once(command, arguments, folder, condition)
                 results[condition][side].append(run)
-                print(f"{condition}, run {number} of {options.runs}, {options.names[side]}: {run['factor']:.2f} times real "
-                      f"time, {cpu_ms(run):.0f} CPU ms for a simulated second"
+                print(f"{condition}, run {number} of {options.runs}, {options.names[side]}: {run['factor']:.2f} times "
+                      f"real time, {cpu_ms(run):.0f} CPU ms for a simulated second"
                       f"{'' if run['success'] else '; the mission failed'}", flush=True)
     (options.output / "comparison.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     table = tables(results, options.names)
