@@ -133,15 +133,15 @@ int calibrate(const Options& options) {
 
 namespace {
 
-/// Of a live source without a board in view: prints once a second what the camera shows, and gives up after a time.
+/// Prints once a second what a live source without a board shows, and gives up `within_s` after the first picture.
 class NoBoard {
  public:
   NoBoard(const Board& board, double within_s) : board_(board), within_s_(within_s) {}
 
   /// Throws Failed when the time is over.
   void look(const cv::Mat& picture) {
-    ++pictures_;
     const auto now = Clock::now();
+    if (pictures_++ == 0) begin_ = next_ = now;
     const double waited_s = std::chrono::duration<double>(now - begin_).count();
     if (waited_s > within_s_)
       throw Failed(
@@ -161,7 +161,7 @@ class NoBoard {
   Board board_;
   double within_s_;
   int pictures_ = 0;
-  Clock::time_point begin_ = Clock::now(), next_ = begin_;
+  Clock::time_point begin_, next_;
 };
 
 }  // namespace

@@ -111,7 +111,8 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->check(number(-180.0, 180.0, "degrees"));
   sub->add_option("--robot", options.robot, "robot file")->check(existing_file());
-  sub->add_option("--within", options.within_s, "[s] time in which a live source must show the board")
+  sub->add_option("--within", options.within_s,
+                  "[s] a live source must show the board at most this long after its first picture")
       ->capture_default_str()
       ->check(number(1.0, 3600.0, "s"));
   sub->add_flag("--accept-mount", options.accept_mount,
