@@ -1,12 +1,16 @@
 #include "sim/render/shader_compiler.hpp"
 
+#include <fcntl.h>
 #include <link.h>
 #include <malloc.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cinttypes>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -37,6 +41,19 @@ int release_pages(dl_phdr_info* library, std::size_t, void*) {
   return 0;
 }
 
+/// Bytes of files, LLVM's among them, that this process has in memory (proc(5), statm); 0 if the kernel does not say
+/// so.
+std::int64_t file_bytes() {
+  const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  std::array<char, 128> text{};
+  const ssize_t length = ::read(file, text.data(), text.size() - 1);
+  ::close(file);
+  std::int64_t pages = 0;
+  if (length <= 0 || std::sscanf(text.data(), "%*d %*d %" SCNd64, &pages) != 1) return 0;
+  return pages * ::sysconf(_SC_PAGESIZE);
+}
+
 }  // namespace
 
 void release_shader_compiler() {
@@ -45,15 +62,14 @@ void release_shader_compiler() {
 }
 
 void ShaderCompilerMemory::after_image() {
-  constexpr long kManyFaults = 100;  // an image without a new shader has none or a few, one with a new shader hundreds
-  const auto faults = [] {
-    rusage usage{};
-    ::getrusage(RUSAGE_THREAD, &usage);
-    return usage.ru_minflt + usage.ru_majflt;
-  };
-  const long now = faults();
-  if (now - page_faults_ > kManyFaults) release_shader_compiler();
-  page_faults_ = now;
+  constexpr std::int64_t kMany = 2 << 20;  // another shader brings 20 MiB and more
+  const std::int64_t now = file_bytes();
+  if (file_bytes_ >= 0 && now <= file_bytes_ + kMany) {
+    file_bytes_ = std::min(file_bytes_, now);
+    return;
+  }
+  release_shader_compiler();
+  file_bytes_ = file_bytes();
 }
 
 }  // namespace constrictor
