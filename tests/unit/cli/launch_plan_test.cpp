@@ -58,6 +58,12 @@ TEST_F(LaunchPlanTest, EachListedManifestCanBeLoaded) {
     SCOPED_TRACE(name);
     EXPECT_FALSE(load_manifest(find_file(name, kManifests)).processes.empty());
   }
+  std::vector<std::string> manifests;
+  for (const auto& entry : std::filesystem::directory_iterator(testing::source_path("deploy"))) {
+    if (entry.path().extension() == ".yaml") manifests.push_back(entry.path().stem());
+  }
+  std::sort(manifests.begin(), manifests.end());
+  EXPECT_EQ(names, manifests);
   for (const char* name : {"case_study", "case_study_fast", "emulated_servos", "two_hosts"})
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
 }

@@ -90,23 +90,23 @@ TEST_P(JointDrive, AJointNeverExceedsItsTorqueLimit) {
 
 /// Two equal links that fall freely, with a joint between them whose rotor has the inertia that the joint feels of the
 /// links: both turn by opposite angles about their centres, so that it feels half the inertia of a link.
-RobotModel free_links(double& felt_kg_m2) {
+RobotModel free_links() {
   RobotModel robot = chain(2, JointAxis::kYaw);
-  felt_kg_m2 = 0.5 * capsule_inertia(robot.module_mass_kg, robot.module_radius_m, robot.module_length_m);
-  robot.joints[0].rotor_inertia_kg_m2 = felt_kg_m2;
+  robot.joints[0].rotor_inertia_kg_m2 =
+      0.5 * capsule_inertia(robot.module_mass_kg, robot.module_radius_m, robot.module_length_m);
   robot.joints[0].gear_friction_nm = 0.0;
   robot.torque_filter_s = 0.0;
   return robot;
 }
 
 TEST_P(JointDrive, ATorqueAcceleratesLinksAndRotor) {
-  double felt_kg_m2 = 0.0;
-  World world(free_links(felt_kg_m2), in_the_air(8.0), settings());
+  const RobotModel robot = free_links();
+  World world(robot, in_the_air(8.0), settings());
   const double torque_nm = -0.002;
   world.set_servo(std::vector{JointSetpoint{0.0, 0.0, 6.0, torque_nm, true}});
   const double time_s = 0.2;
   for (int i = 0; i < std::lround(time_s / kPeriod_s); ++i) world.advance(kPeriod_s);
-  const double rate_rad_s = torque_nm / (2.0 * felt_kg_m2) * time_s;
+  const double rate_rad_s = torque_nm / (2.0 * robot.joints[0].rotor_inertia_kg_m2) * time_s;
   ASSERT_LT(std::abs(rate_rad_s), 2.0) << "the angles must stay small";
   ASSERT_GT(std::abs(rate_rad_s), 0.1);
   EXPECT_NEAR(world.joint_rate_rad_s(0), rate_rad_s, 0.03 * std::abs(rate_rad_s));
@@ -114,8 +114,7 @@ TEST_P(JointDrive, ATorqueAcceleratesLinksAndRotor) {
 }
 
 TEST_P(JointDrive, ARelaxedJointGoesOnTurningWithItsRotor) {
-  double felt_kg_m2 = 0.0;
-  World world(free_links(felt_kg_m2), in_the_air(8.0), settings());
+  World world(free_links(), in_the_air(8.0), settings());
   world.set_servo(std::vector{JointSetpoint{0.0, 0.0, 6.0, 0.004, true}});
   for (int i = 0; i < 5; ++i) world.advance(kPeriod_s);
   const double rate_rad_s = world.joint_rate_rad_s(0);
