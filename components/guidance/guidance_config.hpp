@@ -41,7 +41,7 @@ struct GuidanceConfig : ParameterSet {
           "Sliding speed from which the skin's friction is fully developed"),
       add(odometry.joint_gain, "odometry.joint_gain", 0.25, "", {0.01, 1.0}, kWhileRunning,
           "Share of a joint's measured angle; the rest is its integrated rate"),
-      add(odometry.friction_along, "odometry.friction_along", 0.06, "", {0.0, 5.0}, kAtStart,
+      add(odometry.friction_along, "odometry.friction_along", 0.1, "", {0.0, 5.0}, kAtStart,
           "First guess of the coefficient of friction along the body, until it has been measured"),
       add(odometry.friction_across, "odometry.friction_across", 0.6, "", {0.01, 5.0}, kAtStart,
           "First guess of the coefficient of friction across the body, until it has been measured"),
