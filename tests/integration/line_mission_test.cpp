@@ -15,7 +15,7 @@ TEST_F(MissionRun, NineProcessesFollowTheLineToItsEndByCamera) {
   // The errors are distances of the head from the true line; they include the sway of the head.
   EXPECT_LT(report_["line"]["rms_cross_track_m"], 0.12);
   EXPECT_LT(report_["line"]["max_cross_track_m"], 0.35);
-  EXPECT_LT(report_["pose_error"]["rms_m"], 0.25);
+  EXPECT_LT(report_["pose_error"]["rms_m"], 0.10);
   for (const auto& process : report_["processes"]) EXPECT_EQ(process["restarts"], 0) << process;
 }
 
@@ -35,7 +35,7 @@ TEST_F(MissionRun, FindsTheLineAgainAfterLosingItBehindASharpBend) {
   // The rest of the line is 3 m long: the robot did not follow the line back.
   const double ended_s = event_s("end_of_line", found_s);
   EXPECT_GT(ended_s, found_s + 2.5) << report_["events"];
-  EXPECT_LT(report_["pose_error"]["rms_m"], 0.25);
+  EXPECT_LT(report_["pose_error"]["rms_m"], 0.10);
 }
 
 }  // namespace
