@@ -26,7 +26,7 @@ bool within(double hue, const HueRange& range) {
 
 /// The first colour whose hues contain this one; kColourUnknown: there is none.
 std::uint8_t colour_with(double hue, const std::array<HueRange, msg::kColourCount>& hues) {
-  for (std::uint8_t colour = 1; colour < hues.size(); ++colour) {
+  for (std::uint8_t colour = 1; colour < msg::kColourCount; ++colour) {
     if (within(hue, hues[colour])) return colour;
   }
   return msg::kColourUnknown;

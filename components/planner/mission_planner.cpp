@@ -88,13 +88,16 @@ WantedTask MissionPlanner::cancellation() const {
 
 void MissionPlanner::enter(MissionState state) {
   if (state != memory_.state) {
+    // A caught robot may lose the line and find it again in turn. The time for which it stands still goes on then.
+    constexpr double kAnew_s = 10.0;
+    const bool loses_line = memory_.state == kTransport && state == kSearchLine;
+    const bool finds_line = memory_.state == kSearchLine && state == kTransport;
+    if (!loses_line && !(finds_line && memory_.active_s - memory_.entered_s <= kAnew_s)) memory_.standstill.begin();
     memory_.entered_s = memory_.active_s;
     memory_.object_images = memory_.zone_images = memory_.line_images = 0;
-    memory_.standstill.begin();
     memory_.vain_looks = memory_.step_backs = 0;
     // A new search begins with what it remembers. The count goes on while a search alternates with the following of a
     // line that is lost again at once.
-    constexpr double kAnew_s = 10.0;
     if (memory_.active_s - memory_.searched_s > kAnew_s) {
       memory_.searches = memory_.backed_off = 0;
       if (!leaves_line()) memory_.sweep.end();  // otherwise it would begin anew whenever a line has led the robot away

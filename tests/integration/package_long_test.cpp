@@ -21,7 +21,7 @@ class Package : public ::testing::Test {
  protected:
   Package() {
     fs::create_directories(root_ / "var/lib/dpkg/info");
-    std::ofstream(root_ / "var/lib/dpkg/status");
+    const std::ofstream status(root_ / "var/lib/dpkg/status");
     fs::create_directories(dir_.path() / "home");
   }
   /// Runs a command to its end and returns its output. It must succeed.

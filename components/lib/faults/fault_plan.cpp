@@ -120,7 +120,7 @@ ProcessFault read_process_fault(Configuration& entry, const std::vector<std::str
 }
 
 std::string device_of(Configuration& entry, const FaultTargets& targets) {
-  const std::string name = entry.text("device", breakable_devices());
+  std::string name = entry.text("device", breakable_devices());
   const auto& beside = targets.beside;
   if (beside && std::find(beside->begin(), beside->end(), name) == beside->end()) {
     throw entry.error("device", fmt::format("found {}, which does not run beside this run, accepted {}", name,

@@ -124,8 +124,8 @@ ComponentFactory with_faults(ComponentFactory factory, std::shared_ptr<const Fau
                              std::function<void(double)> wait_ms) {
   if (!plan || (plan->topics.empty() && plan->processes.empty())) return factory;
   ComponentFactory faulty = factory;
-  faulty.create = [create = std::move(factory.create), name = factory.name, plan, wait_ms = std::move(wait_ms)](
-                      Wiring& real, const Setup& setup) -> std::unique_ptr<Component> {
+  faulty.create = [create = std::move(factory.create), name = factory.name, plan = std::move(plan),
+                   wait_ms = std::move(wait_ms)](Wiring& real, const Setup& setup) -> std::unique_ptr<Component> {
     auto wiring = std::make_unique<FaultyWiring>(real, name, *plan, plan->seed * 0x9e3779b97f4a7c15 + setup.seed);
     auto inner = create(*wiring, setup);
     if (dynamic_cast<Plant*>(inner.get()))

@@ -40,7 +40,7 @@ struct FieldVisitor {
       fail("it names no floating-point number");
     }
   }
-  void fail(std::string why) {
+  void fail(const std::string& why) {
     problem = why.empty() ? "there is no such field" : why.starts_with(',') ? "there is no such field" + why : why;
   }
   /// Takes the field's name from the path if it begins with it.

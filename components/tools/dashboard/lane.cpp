@@ -49,8 +49,7 @@ Lane::~Lane() {
 }
 
 void Lane::add(WebServer::Call call) {
-  std::optional<WebServer::Call> replaced;
-  bool full = false;
+  std::optional<WebServer::Call> replaced, refused;
   {
     const std::lock_guard lock(mutex_);
     if (call.service == newest_only_ && !waiting_.empty() && waiting_.back().service == newest_only_) {
@@ -58,11 +57,11 @@ void Lane::add(WebServer::Call call) {
     } else if (waiting_.size() < kMostWaiting) {
       waiting_.push_back(std::move(call));
     } else {
-      full = true;
+      refused = std::move(call);
     }
   }
   changed_.notify_all();
-  if (full) call.fail("too many commands are waiting for their answers");
+  if (refused) refused->fail("too many commands are waiting for their answers");
   if (replaced) replaced->answer("replaced by a newer call");
 }
 

@@ -28,14 +28,14 @@ std::string wrong_address(const std::string& text) {
   return error ? fmt::format("found '{}', accepted an IP address, such as 127.0.0.1 or 0.0.0.0", text) : "";
 }
 
-WebServer::Impl::Impl(WebOptions given, std::string given_name, std::vector<std::string> names, OnCall call,
+WebServer::Impl::Impl(WebOptions given, std::string given_name, const std::vector<std::string>& names, OnCall call,
                       OnChange change)
     : options(std::move(given)),
       name(std::move(given_name)),
       acceptor(context),
       on_call(std::move(call)),
       on_change(std::move(change)) {
-  for (auto& service : names) services.push_back({static_cast<std::uint32_t>(services.size() + 1), service});
+  for (const auto& service : names) services.push_back({static_cast<std::uint32_t>(services.size() + 1), service});
   // Only the files that are there now are served: no request can lead to another place.
   std::error_code error;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(options.page, error)) {
@@ -75,9 +75,9 @@ void WebServer::Impl::accept() {
   });
 }
 
-WebServer::WebServer(WebOptions options, std::string name, std::vector<std::string> services, OnCall on_call,
+WebServer::WebServer(WebOptions options, std::string name, const std::vector<std::string>& services, OnCall on_call,
                      OnChange on_change)
-    : impl_(std::make_shared<Impl>(std::move(options), std::move(name), std::move(services), std::move(on_call),
+    : impl_(std::make_shared<Impl>(std::move(options), std::move(name), services, std::move(on_call),
                                    std::move(on_change))) {
   impl_->listen();
 }

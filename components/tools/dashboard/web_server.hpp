@@ -53,7 +53,7 @@ class WebServer {
   struct Impl;  ///< see web_session.hpp
 
   /// Throws std::runtime_error if the port cannot be opened.
-  WebServer(WebOptions options, std::string name, std::vector<std::string> services, OnCall on_call,
+  WebServer(WebOptions options, std::string name, const std::vector<std::string>& services, OnCall on_call,
             OnChange on_change);
   ~WebServer();
   WebServer(const WebServer&) = delete;

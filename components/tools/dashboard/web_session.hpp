@@ -25,7 +25,7 @@ class Session;
 
 struct WebServer::Impl : std::enable_shared_from_this<WebServer::Impl> {
   using tcp = boost::asio::ip::tcp;
-  Impl(WebOptions given, std::string given_name, std::vector<std::string> names, OnCall call, OnChange change);
+  Impl(WebOptions given, std::string given_name, const std::vector<std::string>& names, OnCall call, OnChange change);
   void listen();
   void accept();
   /// Whether the header Host of a request names this server. Without this check, a page from elsewhere whose name leads

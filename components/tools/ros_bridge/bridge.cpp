@@ -42,7 +42,7 @@ dds::Entity create_ros_participant(const BridgeOptions& options) {
 
 }  // namespace
 
-Bridge::Bridge(const BridgeOptions& options, RobotModel robot, constrictor::Log log)
+Bridge::Bridge(const BridgeOptions& options, const RobotModel& robot, constrictor::Log log)
     : options_(options),
       own_log_(std::move(log)),
       joint_count_(robot.joints.size()),

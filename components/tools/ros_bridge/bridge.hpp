@@ -39,7 +39,7 @@ class Bridge {
  public:
   using SteadyClock = std::chrono::steady_clock;
   /// `log`: of the program, for what happens while it serves.
-  Bridge(const BridgeOptions& options, RobotModel robot, constrictor::Log log);
+  Bridge(const BridgeOptions& options, const RobotModel& robot, constrictor::Log log);
   /// Waits for messages, at most 20 ms, and forwards those that have arrived.
   void serve(SteadyClock::time_point now);
   /// Why the bridge must end, as text for people; empty while the run goes on.

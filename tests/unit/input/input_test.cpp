@@ -209,7 +209,9 @@ TEST_F(InputMemberTest, TwoWritersOfDifferentLevelsAreNeverBothObeyed) {
     // The requests of the two sources interleave; each source keeps its own order.
     std::stable_partition(now.begin(), now.end(),
                           [even = tick % 2 == 0](const msg::Request& r) { return (r.level == kOperator) == even; });
-    at[tick] = [&] { std::for_each(now.begin(), now.end(), [&](const auto& r) { clients_->add(r); }); };
+    at[tick] = [this, &sent = now] {
+      std::for_each(sent.begin(), sent.end(), [&](const auto& r) { clients_->add(r); });
+    };
   }
   run({}, kTicks, at);
   const auto hear = [&](const auto& messages) {

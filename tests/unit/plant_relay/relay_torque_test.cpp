@@ -44,7 +44,7 @@ TEST_F(RelayWithTorques, AJointThatATorqueDoesNotMoveIsNotFrozen) {
   command_ = push(1.0);
   ticks(100);
   EXPECT_EQ(mode(), GateMode::kObeying);
-  EXPECT_FALSE(relay().state().obstacle.size() > 0) << relay().state().obstacle;
+  EXPECT_TRUE(relay().state().obstacle.empty()) << relay().state().obstacle;
 }
 
 TEST_F(RelayWithTorques, AFaultOfTheHardwareEndsTheTorquesAndHolds) {

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 class RunToken : public ::testing::Test {
  protected:
   fs::path file(const std::string& text, fs::perms mode = fs::perms::owner_read | fs::perms::owner_write) const {
-    const fs::path path = folder_.path() / "token";
+    fs::path path = folder_.path() / "token";
     std::ofstream(path) << text;
     fs::permissions(path, mode);
     return path;

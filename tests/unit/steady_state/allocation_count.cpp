@@ -1,6 +1,7 @@
 #include "allocation_count.hpp"
 
 #include <cstddef>
+#include <cstdlib>
 #include <new>
 
 namespace constrictor::testing {
@@ -59,12 +60,12 @@ void* allocate_or_throw(std::size_t size, const void* caller) {
 }  // namespace
 
 extern "C" {
-void* malloc(std::size_t size) { return allocate(size, __builtin_return_address(0)); }
-void* calloc(std::size_t count, std::size_t size) {
+void* malloc(std::size_t size) noexcept { return allocate(size, __builtin_return_address(0)); }
+void* calloc(std::size_t count, std::size_t size) noexcept {
   note(__builtin_return_address(0));
   return __libc_calloc(count, size);
 }
-void* realloc(void* block, std::size_t size) {
+void* realloc(void* block, std::size_t size) noexcept {
   note(__builtin_return_address(0));
   return __libc_realloc(block, size);
 }
