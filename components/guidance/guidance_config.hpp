@@ -43,7 +43,7 @@ struct GuidanceConfig : ParameterSet {
           "Share of a joint's measured angle; the rest is its integrated rate"),
       add(odometry.friction_along, "odometry.friction_along", 0.1, "", {0.0, 5.0}, kAtStart,
           "First guess of the coefficient of friction along the body, until it has been measured"),
-      add(odometry.friction_across, "odometry.friction_across", 0.6, "", {0.01, 5.0}, kAtStart,
+      add(odometry.friction_across, "odometry.friction_across", 0.7, "", {0.01, 5.0}, kAtStart,
           "First guess of the coefficient of friction across the body, until it has been measured"),
       add(odometry.friction_rate_1_s, "odometry.friction_rate_1_s", 0.6, "1/s", {0.0, 100.0}, kWhileRunning,
           "Speed at which the estimated coefficients follow the measured forces of the ground"),

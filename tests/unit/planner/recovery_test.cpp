@@ -180,45 +180,6 @@ TEST_F(PlannerTest, ARobotThatIsCaughtWhileItFollowsTheLineWithAnObjectIsLedAway
   EXPECT_EQ(tasks[2], msg::kTaskExplore);
 }
 
-// The end of a wall stood between the arms of the U. The robot lost the line every 20 s and found it again at once, for
-// ten minutes, and no state lasted long enough for its standing still to be noticed.
-TEST_F(PlannerTest, ACaughtRobotThatLosesTheLineAndFindsItInTurnIsLedAway) {
-  config_.standstill_s = 15.0;
-  find_line();
-  fetch(msg::kColourGreen);
-  carry();
-  const double from_s = time_s_;
-  int losses = 0;
-  last_ = {};
-  for (int i = 1; i < 2000 && last_.parameters.direction != msg::kDirectionBackwards; ++i) {
-    if (i % 250 == 0 && memory_.state == kTransport) {
-      abort(msg::kEventLineLost);
-      ++losses;
-    } else {
-      step();  // the line is in view
-    }
-  }
-  EXPECT_EQ(losses, 2);
-  EXPECT_NEAR(time_s_ - from_s, 15.0, 0.5);
-}
-
-TEST_F(PlannerTest, ALongSearchOfTheLineIsNotCountedAsStandingStillWhileItIsFollowed) {
-  config_.standstill_s = 15.0;
-  find_line();
-  fetch(msg::kColourGreen);
-  carry();
-  see_line(false);
-  abort(msg::kEventLineLost);
-  ASSERT_EQ(memory_.state, kSearchLine);
-  steps(600);  // 12 s
-  ASSERT_EQ(memory_.state, kSearchLine);
-  see_line(true);
-  steps(5);
-  ASSERT_EQ(memory_.state, kTransport);
-  steps(700);  // 14 s
-  EXPECT_EQ(memory_.state, kTransport) << "the time of the search is not added";
-}
-
 TEST_F(PlannerTest, NavigationsReportOfAHeldObjectOverridesTheStateAfterAWhile) {
   find_line();
   fetch(msg::kColourGreen);
