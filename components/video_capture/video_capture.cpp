@@ -162,7 +162,9 @@ void VideoCapture::step(const Tick& tick) {
 
 ComponentFactory make_video_capture_factory(video::OpenVideo open) {
   return {"camera",
-          [open](Wiring& wiring, const Setup& setup) { return std::make_unique<VideoCapture>(wiring, setup, open); },
+          [open = std::move(open)](Wiring& wiring, const Setup& setup) {
+            return std::make_unique<VideoCapture>(wiring, setup, open);
+          },
           "components/video_capture/video_capture.yaml", describe_parameters<VideoCaptureConfig>};
 }
 

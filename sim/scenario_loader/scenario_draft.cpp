@@ -112,7 +112,7 @@ void read_bodies(Configuration& root, bool has_line, ScenarioDraft& draft) {
 /// Checks that the mission can be carried out in this scene. This check is the only use of the mission here: the
 /// launcher passes this section of the file to the components. Returns the mission.
 Mission check_mission(const Configuration& section, const Scenario& scenario) {
-  const Mission mission = read_mission(section);
+  Mission mission = read_mission(section);
   const std::vector<std::uint8_t>& sequence = mission.sequence;
   for (const std::uint8_t colour : sequence) {
     const auto has_colour = [colour](const auto& body) { return body.colour == colour; };

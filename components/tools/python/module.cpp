@@ -24,7 +24,7 @@ void raise(const char* name, const char* text) {
   PyErr_SetString(type.ptr(), text);
 }
 
-void translate(std::exception_ptr thrown) {
+void translate(std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-value-param): pybind11 asks for a copy
   if (!thrown) return;
   try {
     std::rethrow_exception(thrown);

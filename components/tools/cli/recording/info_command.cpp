@@ -135,7 +135,9 @@ int recover(const std::string& name) {
   try {
     reader.read();
   } catch (const mcap::Error&) {
-    mcap::File(file, mcap::File::Mode::kChange);  // refuses a file that another process is writing
+    {
+      const mcap::File changed(file, mcap::File::Mode::kChange);  // refuses a file that another process is writing
+    }
     return recover_damaged(file);
   }
   const std::string why = reader.incomplete();
