@@ -61,7 +61,7 @@ class Builder : public dds::SampleVisitor {
       py::list names;
       for (std::size_t i = 0; i < static_cast<std::size_t>(shape.front()); ++i)
         names.append(name_of(*field->info.constants, values.bytes[i]));
-      return add(std::move(names));
+      return add(names);
     }
     add(py::array(dtype_of(values.primitive), std::move(shape), values.bytes.data()));
   }
@@ -121,8 +121,8 @@ class Builder : public dds::SampleVisitor {
     ++skipped_;
     return true;
   }
-  void add(py::object value) {
-    if (!skips()) put(std::move(value));
+  void add(const py::object& value) {
+    if (!skips()) put(value);
   }
   void put(const py::object& value) {
     if (open_.empty()) root_ = value;

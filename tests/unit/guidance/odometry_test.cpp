@@ -42,7 +42,7 @@ RobotModel fine_snake() {
 class SlidingBody {
  public:
   /// `heading`: of the path at a length.
-  explicit SlidingBody(std::function<double(double)> heading) {
+  explicit SlidingBody(const std::function<double(double)>& heading) {
     points_.push_back({0.0, 0.0});
     for (int i = 1; i < 120000; ++i) {
       const double h = heading((i - 0.5) * kStep);
