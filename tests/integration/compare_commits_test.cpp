@@ -22,7 +22,7 @@ class CompareCommits : public ::testing::Test {
   /// A program that takes turns with another one in the file `turns`, and writes a report of 10 simulated seconds.
   fs::path program(const std::string& name, const std::string& factor, const std::string& processes,
                    const std::string& before = "") {
-    const fs::path file = dir_.path() / name;
+    fs::path file = dir_.path() / name;
     std::ofstream(file) << "#!/bin/sh\n"
                         << "while [ $# -gt 1 ]; do [ $1 = --report ] && folder=$2; shift; done\n"
                         << "echo " << name << " >> " << (dir_.path() / "turns").string() << "\n"

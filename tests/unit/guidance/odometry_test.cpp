@@ -133,7 +133,7 @@ Travel travel(const SlidingBody& body, double from, double length_m, double spee
 /// Runs the odometry over the shapes q(t) of a snake that is at rest at first. Returns the final pose of the head in
 /// its first frame.
 PlanarPose run_shapes(const RobotModel& model, int ticks, const std::function<double(std::size_t, double)>& joint,
-                      const std::function<double(double)>& yaw, std::vector<double> load_n = {},
+                      const std::function<double(double)>& yaw, const std::vector<double>& load_n = {},
                       const OdometryConfig& config = with_friction(0.05, 0.5)) {
   PoseFilterState filter_state;
   PoseFilter filter(filter_state);

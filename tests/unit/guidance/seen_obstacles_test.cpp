@@ -15,7 +15,7 @@ using Points = std::vector<Eigen::Vector2d>;
 
 struct Looking : Mapping {
   /// Images that show these obstacles, in the head's frame.
-  void look_at(const Points& points, int images, std::vector<msg::Blob> blobs = {}) {
+  void look_at(const Points& points, int images, const std::vector<msg::Blob>& blobs = {}) {
     msg::ObjectPercepts percepts{};
     for (const msg::Blob& b : blobs) percepts.blobs[percepts.blob_count++] = b;
     for (const Eigen::Vector2d& p : points) {
