@@ -34,7 +34,7 @@ if [ "$total" = 0 ]; then
   echo "tidy: no file that is compiled has a path that contains ${parts[*]}" >&2
   exit 64
 fi
-# Python holds output back if no terminal reads it; the progress is to be seen at once.
+# Python would hold its output back, because a pipe reads it, and the progress would come in bursts.
 PYTHONUNBUFFERED=1 run-clang-tidy -quiet -p build/tidy "${options[@]}" "${parts[@]}" 2>&1 | awk -v total="$total" '
   { gsub(/\033\[[0-9;]*m/, "") }  # run-clang-tidy always asks for colours
   /^[^ ]*clang-tidy[^ ]* -/ { printf "[%d/%d] %s\n", ++files, total, $NF; fflush(); eigen = 0; next }
